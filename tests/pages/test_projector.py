@@ -175,9 +175,7 @@ def test_every_slide_can_be_read(
         for number, (_, event) in enumerate(sheets()):
             *teams, last = pictured(event.contest.teams, tmp_path)
             left = msgspec.structs.replace(last, withdrawn=True, substitute=teams[0].name)
-            shown = msgspec.structs.replace(
-                event.contest, announced=told, teams=(*teams, left)
-            )
+            shown = msgspec.structs.replace(event.contest, announced=told, teams=(*teams, left))
             made = encode(sheet(name, shown, expected(event.contest)))
             file = tmp_path / "contest.json"
             file.write_bytes(long_teams(made) if name == LONG_NAME else made)

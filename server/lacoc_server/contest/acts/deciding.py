@@ -70,7 +70,12 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
         *(say("decide.leaves", team=team, left=here) for team in found.leaving),
         *_matches(found, was, then),
         *_at_courts(was, then),
-        *(line for fact in placed if isinstance(fact, Replaced) for line in _meaning(was, then, fact)),
+        *(
+            line
+            for fact in placed
+            if isinstance(fact, Replaced)
+            for line in _meaning(was, then, fact)
+        ),
         *_ranks(found, then),
         *_follows(was, then),
     ]

@@ -62,9 +62,7 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
         drawn=bool(contest.stages),
         to_draw=_to_draw(contest),
         teams=tuple(_teams(book)),
-        courts=tuple(
-            CourtRow(court=court, here=seen.there) for court, seen in known.seen.items()
-        ),
+        courts=tuple(CourtRow(court=court, here=seen.there) for court, seen in known.seen.items()),
         slots=tuple(sorted(slots(contest, known), key=lambda slot: (slot.court, slot.at_ms))),
         day=DayState(
             paused=contest.day.paused, until_ms=contest.day.until_ms, reason=contest.day.reason
