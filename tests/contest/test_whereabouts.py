@@ -9,12 +9,16 @@ from cup import Cup
 
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
+    Closed,
     Disqualified,
     Drawn,
+    Entered,
     Paused,
     Planned,
     Played,
     StageSettings,
+    Substituted,
+    Undrawn,
     Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -32,7 +36,7 @@ from lacoc_server.contest.league.titles import titles
 from lacoc_server.contest.live.teller import Teller
 from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
-from lacoc_shared.words import faults, render
+from lacoc_shared.words import faults, render, say
 
 ADDRESSES = {"north": "tcp/10.0.0.1:7447", "south": "tcp/10.0.0.1:7448"}
 GAME = 120_000
@@ -259,8 +263,9 @@ def test_a_stage_that_is_not_drawn() -> None:
     last = {str(team) for team in cup.contest.stages[0].matches[-1].teams}
     free = next(name for name in cup.names if name not in last)
     assert where(cup, {})[free].said.code == "team.awaits-draw"
-    cup.add(Withdrawn, team=free)
-    assert where(cup, {})[free].state == "out"
+    cup.add(Withdrawn, team=free, reason="ill")
+    there = where(cup, {})[free]
+    assert (there.state, there.said) == ("out", say("team.withdrawn", reason="ill"))
     cup.add(Disqualified, team=next(iter(last)))
     assert where(cup, {})[next(iter(last))].state == "out"
     match = cup.contest.stages[0].matches[-1]
@@ -273,11 +278,35 @@ def test_a_stage_that_is_not_drawn() -> None:
 
 
 def test_before_the_first_draw_all_wait() -> None:
-    """Before the first draw, all teams that have entered wait for the draw."""
+    """Before the first draw all teams wait for it; after it was taken back they are told why."""
     event = Event(3, 1, Random(1))
     event.add(Planned, stage="cup", format="round-robin", settings=StageSettings())
-    found = found_for(event.contest, SeenCourts({}, {}), ContestPace(0, GAME))
-    assert [there.said.code for there in found.values()] == ["team.awaits-draw"] * 3
+
+    def codes() -> set[str]:
+        found = found_for(event.contest, SeenCourts({}, {}), ContestPace(0, GAME))
+        return {there.said.code for there in found.values()}
+
+    assert codes() == {"team.awaits-draw"}
+    event.add(Closed)
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    assert "team.draw-taken-back" not in codes()
+    event.add(Undrawn, stage="cup", reason="a late team")
+    assert codes() == {"team.draw-taken-back"}
+
+
+def test_a_team_is_told_who_plays_in_its_place() -> None:
+    """A team whose place another one took is not thanked for its last match."""
+    cup = Cup()
+    cup.add(Entered, team="Late", files="f")
+    cup.add(Substituted, team=cup.names[0], substitute="Late", reason="a broken leg")
+    said = say("team.substituted", substitute="Late", reason="a broken leg")
+    assert where(cup, {})[cup.names[0]].said == said
+
+
+def test_what_can_be_played_before_the_first_draw() -> None:
+    """Before the first draw the matches of its format are foreseen."""
+    event = Event(3, 1, Random(1))
+    event.add(Planned, stage="cup", format="round-robin", settings=StageSettings())
     fixtures = {render(match.fixture) for match in foreseen(event.contest, FORMATS)}
     assert fixtures == {f"Round robin, round {number}" for number in (1, 2, 3)}
 

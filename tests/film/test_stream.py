@@ -107,7 +107,7 @@ def test_a_match_is_streamed_into_a_file(venue: Venue, tmp_path: Path) -> None:
     with ExitStack() as stack:
         out = tmp_path / "out.mkv"
         running = streaming(venue, str(out), stack)
-        until(lambda: out.exists() and out.stat().st_size > 10_000)
+        until(lambda: out.exists() and out.stat().st_size > 10_000, 3 * LIMIT_S)
         referee = playing(venue)
         time.sleep(1)
         decide(referee, "for the test", type="adjust", seat="left", points=70)

@@ -7,8 +7,8 @@ from chance_event import Event
 
 from lacoc_server.contest.league.facts import Called, Played
 
-NOW_MS = 1_000_000
-"""The time at which each of these contests begins."""
+NOW_MS = 1_020_000
+"""The time at which each of these contests begins: a full minute."""
 
 
 class Cup(Event):

@@ -1,7 +1,9 @@
 """Tests of pauses and breaks as everybody sees them, and of what ends with the contest."""
 
+import pytest
 from cup import Cup
 
+from lacoc_server.contest.league.contest import end_ms
 from lacoc_server.contest.league.facts import (
     Announced,
     Closed,
@@ -61,6 +63,14 @@ def test_a_break_before_a_stage_is_a_pause_too() -> None:
     assert final.next_seats is not None
     cup.call(final.pairing.id, "north", final.next_seats)
     assert pause_of(cup) is None
+
+
+@pytest.mark.parametrize(
+    ("length_ms", "ends_ms"), [(59_999, 90_010), (60_000, 120_000), (89_989, 120_000)]
+)
+def test_a_pause_of_minutes_ends_at_a_full_minute(length_ms: int, ends_ms: int) -> None:
+    """Pages tell the end of a pause in minutes, so nobody is called in the minute before."""
+    assert end_ms(30_011, length_ms) == ends_ms
 
 
 def test_a_line_and_a_pause_end_with_the_contest() -> None:

@@ -222,9 +222,8 @@ def test_one_health_of_another_session_is_not_believed(court: CourtStub, session
     others = tuple(msgspec.structs.replace(seat, session=7) for seat in true.seats)
     stale = msgspec.structs.replace(true, seats=others)
     for told in (stale, true, stale):
-        before = one.view.health
         court.in_a_beat(lambda told=told: court.network.publish_health(told))  # type: ignore[misc]
-        until(lambda before=before: one.poll(0.0) or one.view.health is not before)
+        until(lambda told=told: one.poll(0.0) or one.view.health == told)  # type: ignore[misc]
         assert one.hold is Hold.HELD
     court.in_a_beat(lambda: court.network.publish_health(stale))
     until(lambda: one.poll(0.0) or one.hold is Hold.REPLACED)

@@ -44,8 +44,10 @@ def assign(call: str = "c1", **changes: Any) -> bytes:
     return encode(Assign(**(fields | changes)))
 
 
-def withdraw(call: str = "c1", token: str = OFFICE, official: bool = False) -> bytes:
-    return encode(Withdraw(token=token, call=call, official=official))
+def withdraw(
+    call: str = "c1", token: str = OFFICE, begun: bool = False, official: bool = False
+) -> bytes:
+    return encode(Withdraw(token=token, call=call, begun=begun, official=official))
 
 
 class Desk(OfficeDesk[str]):
@@ -113,6 +115,16 @@ def test_a_match_that_is_played_is_kept() -> None:
         assert (answer, desk.wanted) == (busy, None)
     assert desk.judge("assign", assign("c3")) == busy
     assert desk.judge("withdraw", withdraw()) == busy
+
+
+def test_a_match_that_is_played_ends_if_the_office_says_so() -> None:
+    """A match in play is withdrawn where the office asks for it; the court has to end it."""
+    desk = Desk()
+    desk.hold("c1", Phase.PLAYING)
+    answer = desk.later("withdraw", withdraw(begun=True))
+    assert (answer(), desk.wanted) == (None, WantedMatch(None, ends=True))
+    desk.hold("", Phase.LOBBY)
+    assert (answer(), desk.wanted) == (Done(), None)
 
 
 def test_a_match_is_withdrawn() -> None:

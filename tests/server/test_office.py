@@ -208,6 +208,21 @@ def test_a_match_that_is_played_goes_on(waiting: Office) -> None:
     assert error.value.phrase.values["why"] == say("why.office-opens-next")
 
 
+def test_a_match_that_no_longer_counts_ends_in_play(waiting: Office, folder: Path) -> None:
+    """The office can end a match that is played; it is void, and its log and record say why."""
+    call = waiting.assign("Ants", "Bees", arena_settings=LONGER)
+    waiting.plays("Ants", "Bees", until=lambda: waiting.link.phase is Phase.PLAYING)
+    sheet = waiting.link.sheet
+    assert sheet is not None
+    assert waiting.answer(lambda: waiting.link.withdraw(call, begun=True)) == Done()
+    waiting.until(lambda: waiting.link.call == "")
+    played = record(folder, sheet.match_id)
+    assert played.result is not None
+    assert played.result.official == "void"
+    decided = [event.data["reason"] for event in played.events if event.kind == "decision"]
+    assert decided == [{"code": "reason.office-takes-match"}]
+
+
 def test_a_void_match_has_a_result_too(waiting: Office) -> None:
     """If a referee aborts a match, the office gets the result "void" with the call and teams."""
     call = waiting.assign("Ants", "Bees", arena_settings=REFEREED)

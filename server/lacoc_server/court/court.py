@@ -301,7 +301,8 @@ class Court:
     def _follow(self) -> list[Input]:
         """Return the court's own inputs that follow a recorded beat: decisions, or its advice."""
         match, before = self._journal.match, self._trouble
-        if self._wanted is not None and not (match.is_over or match.has_begun):
+        wanted = self._wanted
+        if wanted is not None and not match.is_over and (wanted.ends or not match.has_begun):
             return [Decide(THE_COURT, say("reason.office-takes-match"), Abort())]
         self._trouble = now = self._journal.trouble
         why = before or now

@@ -62,6 +62,8 @@ class WantedMatch(NamedTuple, Generic[T]):
 
     prepared: T | None
     """The prepared match; None: the court shall wait."""
+    ends: bool = False
+    """Whether a match that has begun ends for it."""
 
 
 class _OfficeToken(AnyToken):
@@ -184,12 +186,12 @@ class OfficeDesk(Generic[T]):
     def _withdrawn(self, request: Withdraw) -> Done | Refusal | None:
         if self._call != request.call:
             return Done()
-        if self._plays:
+        if self._plays and not request.begun:
             self.wanted = None
             return self._busy()
         if self._phase is Phase.OFFICIAL and not request.official:
             return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
-        self.wanted = WantedMatch(None)
+        self.wanted = WantedMatch(None, ends=request.begun)
         return None
 
     @property

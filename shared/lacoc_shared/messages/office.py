@@ -137,9 +137,11 @@ class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: close this match, if it has not begun."""
+    """A request of the office: close this match, which then is void."""
 
     call: Call
+    begun: bool = False
+    """Whether to close it also when it has begun; else that is refused."""
     official: bool = False
     """Whether to close it also when its result is official, so that its record ends."""
 

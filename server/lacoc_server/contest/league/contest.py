@@ -40,6 +40,8 @@ from lacoc_server.contest.league.standings import Table
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
+_MINUTE_MS = 60_000
+
 
 class StageView(msgspec.Struct, frozen=True, kw_only=True):
     """A stage with its matches and tables."""
@@ -444,6 +446,15 @@ def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
     return tuple(moves.values())
 
 
+def end_ms(begin_ms: int, length_ms: int) -> int:
+    """Return when a pause ends, in milliseconds since 1970, UTC.
+
+    One of a minute or more ends at a full minute: pages tell it so, and nobody is called before.
+    """
+    end_ms = begin_ms + length_ms
+    return end_ms if length_ms < _MINUTE_MS else -(-end_ms // _MINUTE_MS) * _MINUTE_MS
+
+
 def _day(facts: Sequence[AnyFact]) -> Day:
     """Return whether games are called: the newest pause, and what was shifted since."""
     day = Day(paused=False, until_ms=0, reason="")
@@ -454,7 +465,7 @@ def _day(facts: Sequence[AnyFact]) -> Day:
             case Resumed():
                 day = Day(paused=False, until_ms=0, reason="")
             case Shifted():
-                until_ms = max(day.until_ms, fact.at_ms + fact.by_ms)
+                until_ms = max(day.until_ms, end_ms(fact.at_ms, fact.by_ms))
                 day = Day(paused=day.paused, until_ms=until_ms, reason=fact.reason or day.reason)
     return day
 

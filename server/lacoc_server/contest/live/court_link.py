@@ -161,15 +161,20 @@ class CourtLink:
         )
         return self._ask("assign", request, Done)
 
-    def withdraw(self, call: str, *, official: bool = False) -> Asked[Done]:
-        """Have an assigned match closed; refused if it has begun.
+    def withdraw(self, call: str, *, begun: bool = False, official: bool = False) -> Asked[Done]:
+        """Have an assigned match closed.
 
         Args:
             call: id of its call.
+            begun: whether to close it also if it has begun; else that is refused.
             official: whether to close it also if its result is official; else this is refused.
         """
         request = Withdraw(
-            token=self._token, generation=self._generation, call=call, official=official
+            token=self._token,
+            generation=self._generation,
+            call=call,
+            begun=begun,
+            official=official,
         )
         return self._ask("withdraw", request, Done)
 

@@ -238,16 +238,17 @@ class Office:
         )
 
     def _take_back(self, now_ms: int) -> None:
-        """Withdraw matches that courts have, but should not have any more."""
+        """Withdraw matches that courts have, but should not have any more, also those in play."""
         running = {call.id for call in self.contest.running}
         for link in filter(None, self._links.values()):
             call = link.call
-            waits = link.phase in (Phase.LOBBY, Phase.READY)
+            begun = link.phase in _BEGUN
             is_fine = call in running or (
                 self._open_matches is not None and is_open_call(call or "")
             )
-            if call and waits and not is_fine and self._may_ask(call, now_ms):
-                self._asked[call] = link.withdraw(call)
+            is_open = begun or link.phase in (Phase.LOBBY, Phase.READY)
+            if call and is_open and not is_fine and self._may_ask(call, now_ms):
+                self._asked[call] = link.withdraw(call, begun=begun)
 
     def _fill(self, now_ms: int) -> None:
         """Give open matches to the courts that have no game."""

@@ -197,6 +197,8 @@ def play_live(
                 if office.is_superseded:
                     tenure.end()
                 tenure.check()
+                for line in ticker.newest(office.contest, office.facts, office.known):
+                    news(line)
                 now_s = time.monotonic()
                 if office.over and over_s == math.inf:
                     if not until_over:
@@ -208,8 +210,6 @@ def play_live(
                     elsewhere.step(office, closing=now_s - over_s > shown_s)
                 writer(office.contest, office.expected)
                 bots.follow(office.contest)
-                for line in ticker.newest(office.contest, office.facts, office.known):
-                    news(line)
                 for line in door.news() if door is not None else ():
                     tell(line)
                 time.sleep(_STEP_S)

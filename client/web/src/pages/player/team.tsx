@@ -6,6 +6,9 @@ import type { Team } from "../../core/team";
 import { said, sentence, t } from "../../i18n";
 import { RulesLink } from "../../ui/rules_link";
 
+/** What is said of a team that has played to its end. */
+const PLAYED: ReadonlySet<string> = new Set(["team.out", "team.over"]);
+
 interface Props {
   court: Court;
   team: Team;
@@ -32,7 +35,8 @@ export function TeamCard({ court, team }: Props) {
         <h1 id="entrance-title">{there.team}</h1>
       </div>
       <div role="status" class="coming">
-        <p>{t(isOver ? "team.thanks" : "team.nextMatch")}</p>
+        {!isOver && <p>{t("team.nextMatch")}</p>}
+        {PLAYED.has(there.said.code) && <p>{t("team.thanks")}</p>}
         <strong>{said(there.said)}</strong>
         {there.state === "waits" && there.opponent && there.fixture && <p>{said(there.fixture)}</p>}
         {Boolean(there.games_before) && (

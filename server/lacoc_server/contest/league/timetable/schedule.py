@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import msgspec
 
-from lacoc_server.contest.league.contest import Contest, StageView, next_round
+from lacoc_server.contest.league.contest import Contest, StageView, end_ms, next_round
 from lacoc_server.contest.league.facts import Closed, Drawn, Planned, RoundDrawn, new, stage_of
 from lacoc_server.contest.league.formats.format import Format
 from lacoc_server.contest.league.matches import ContestMatch
@@ -77,9 +77,9 @@ def not_before_ms(contest: Contest, match: ContestMatch, now_ms: int) -> int:
     earliest += [move.not_before_ms for move in contest.moves if move.pairing == match.pairing.id]
     before = before[: before.index(name)] if name in before else before
     if name not in ended and (ends := [past[one] for one in before if one in past]):
-        earliest.append(max(ends) + round(1000 * plan.break_s))
+        earliest.append(end_ms(max(ends), round(1000 * plan.break_s)))
     if is_final(match) and not match.games and name in past:
-        earliest.append(past[name] + round(1000 * plan.final_break_s))
+        earliest.append(end_ms(past[name], round(1000 * plan.final_break_s)))
     return max(earliest)
 
 

@@ -11,7 +11,17 @@ from string import ascii_lowercase
 from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest, StageView
-from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played, stage_of
+from lacoc_server.contest.league.facts import (
+    AnyFact,
+    Called,
+    Disqualified,
+    Planned,
+    Played,
+    Substituted,
+    Undrawn,
+    Withdrawn,
+    stage_of,
+)
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
@@ -123,7 +133,7 @@ def whereabouts(
             view, match = coming[name]
             found[name] = _waits(contest, name, view, match, begins.get(match.pairing.id), pace)
         elif not team.gone and may_come(contest, name):
-            found[name] = Whereabouts(team=name, state="waits", said=say("team.awaits-draw"))
+            found[name] = Whereabouts(team=name, state="waits", said=_awaits_draw(contest))
         else:
             found[name] = _ended(contest, name, over=False)
     return found
@@ -211,7 +221,32 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
                     )
     if over:
         return Whereabouts(team=team, state="over", said=say("team.over", place=place), rank=rank)
-    return Whereabouts(team=team, state="out", said=say("team.out", place=place), rank=rank)
+    said = _why_gone(contest, team) or say("team.out", place=place)
+    return Whereabouts(team=team, state="out", said=said, rank=rank)
+
+
+def _why_gone(contest: Contest, team: str) -> Phrase | None:
+    """Say why a team has left the contest, by the newest decision about it; None: it has not."""
+    for fact in reversed(contest.decisions):
+        match fact:
+            case Substituted(team=name) if name == team:
+                reason = fact.reason or None
+                return say("team.substituted", substitute=fact.substitute, reason=reason)
+            case Withdrawn(team=name) if name == team:
+                return say("team.withdrawn", reason=fact.reason or None)
+            case Disqualified(team=name) if name == team:
+                return say("team.disqualified", reason=fact.reason or None)
+    return None
+
+
+def _awaits_draw(contest: Contest) -> Phrase:
+    """Say that the next match is not drawn; also if its draw was taken back."""
+    drawn = {view.name for view in contest.stages}
+    for fact in reversed(contest.decisions):
+        if isinstance(fact, Undrawn) and fact.stage not in drawn:
+            stage = title(contest, fact.stage)
+            return say("team.draw-taken-back", stage=stage, reason=fact.reason or None)
+    return say("team.awaits-draw")
 
 
 def _match(contest: Contest, pairing: str) -> tuple[StageView, ContestMatch]:
