@@ -467,6 +467,7 @@ def test_predict_compare_and_the_way_back(
     page.sees(".differences tbody tr", "Forward")
     page.sees(".shows", "pale: trial 1")
     page.until(f"window.__lacoc.view.ghostPos('{TIP}') !== null")
+    page.page.click("#tab-trials")
     page.find("[aria-label='Take the table of Trial 1, key 2']").click()
     page.cell_is(1, 0, "0")
 
