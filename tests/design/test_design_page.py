@@ -162,6 +162,7 @@ def test_two_pages_share_one_table(opens: Opens) -> None:
     other.ask("place", row=5, col=3, typing="-2")
     one.until(lambda: "-2" in str(one.last(MessageKind.PEOPLE)))
     assert len(one.last(MessageKind.PEOPLE)["people"]) == 2
+    other.until(lambda: "me" in other.last(MessageKind.PEOPLE))
     assert one.last(MessageKind.PEOPLE)["me"] != other.last(MessageKind.PEOPLE)["me"]
 
 

@@ -99,6 +99,7 @@ def pictures(container: Any) -> Iterator[tuple[float, np.ndarray]]:
         yield float(frame.time), frame.to_ndarray(format="rgb24")
 
 
+@pytest.mark.long(minutes=1)
 @pytest.mark.slow
 def test_a_match_is_streamed_into_a_file(venue: Venue, tmp_path: Path) -> None:
     """The file has the match as it goes on: pictures at their times, its sounds, the score."""

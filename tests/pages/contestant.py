@@ -12,6 +12,23 @@ from waiting import LIMIT_S
 
 from lacoc_shared.seat import Phase
 
+TOASTS = """
+window.__toasts = [];
+new MutationObserver((changes) => {
+  for (const { addedNodes } of changes)
+    for (const node of addedNodes)
+      if (node instanceof Element)
+        window.__toasts.push(
+          ...(node.matches(".toast") ? [node] : node.querySelectorAll(".toast")),
+        );
+}).observe(document, { childList: true, subtree: true });
+"""
+"""Keeps all toasts of a page: a busy test may look when one has gone again."""
+_TOASTED = """(text) => {
+  const at = window.__toasts.findIndex((toast) => toast.textContent.includes(text));
+  return at >= 0 && Boolean(window.__toasts.splice(0, at + 1));
+}"""
+
 
 class Contestant:
     """A contestant's page in a browser profile of its own.
@@ -26,6 +43,7 @@ class Contestant:
         settings: dict[str, Any] = {"viewport": {"width": 1000, "height": 700}}
         self.url = url
         self.page: Page = open_page(**settings | options)
+        self.page.add_init_script(TOASTS)
 
     def open(
         self, path: str = "/play", key: str | None = None, query: str = "", token: str = ""
@@ -57,8 +75,8 @@ class Contestant:
         self.sees(".next", text)
 
     def is_toasted(self, text: str) -> None:
-        """Wait for a toast (a short note) with the text."""
-        expect(self.find(".toast").filter(has_text=text).first).to_be_visible()
+        """Wait for a toast (a short note) with the text, later than those waited for before."""
+        self.page.wait_for_function(_TOASTED, arg=text)
 
     def stands(self, how: str) -> None:
         """Wait until the page is in the state `how`: seated, outside, lost, left or watching."""

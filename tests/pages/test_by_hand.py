@@ -121,6 +121,7 @@ def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     page.sees("dialog a[href='rules/en']", "All rules")
 
 
+@pytest.mark.long(minutes=1)
 def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     """A contestant and a referee play and judge a match with fingers, each on a phone."""
     page = opened(venue, sit, viewport=PHONE, has_touch=True, is_mobile=True)

@@ -16,18 +16,30 @@ pytestmark = pytest.mark.slow
 _LEAGUE = Path(__file__).parents[1] / "league"
 """Has modules that the cases' own programs import."""
 CASES = sorted(Path(__file__).with_name("core").glob("*.test.mjs"))
+EDITED = [case for case in CASES if case.name == "design_shared.test.mjs"]
+"""Cases in which the environment says how often four pages edit one table."""
 
 
-def test_the_pure_parts_of_the_pages() -> None:
+@pytest.mark.parametrize(
+    ("cases", "edits"),
+    [(CASES, 200), pytest.param(EDITED, 1000, marks=pytest.mark.long(minutes=1))],
+    ids=["all", "many edits"],
+)
+def test_the_pure_parts_of_the_pages(cases: list[Path], edits: int) -> None:
     """All cases in tests/pages/core pass in Node; the output names each case that fails."""
-    assert CASES
+    assert cases
     done = subprocess.run(
-        [*NODE_OF_PAGES, "--test", "--test-isolation=none", *CASES],
+        [*NODE_OF_PAGES, "--test", "--test-isolation=none", *cases],
         capture_output=True,
         text=True,
         encoding="utf-8",
         check=False,
-        env={**os.environ, "PYTHON": sys.executable, "PYTHONPATH": str(_LEAGUE)},
+        env={
+            **os.environ,
+            "PYTHON": sys.executable,
+            "PYTHONPATH": str(_LEAGUE),
+            "EDITS": str(edits),
+        },
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

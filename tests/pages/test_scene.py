@@ -384,6 +384,7 @@ WebGL2RenderingContext.prototype.getParameter = function (name) {
 """Lets the browser's software say that it is a graphics card."""
 
 
+@pytest.mark.long(minutes=1)
 def test_a_graphics_card_draws_light_and_shadows(stand: Stand, console: Any) -> None:
     """All shaders of the fine picture compile, and each robot has its colour and a shadow."""
     stand.page.add_init_script(AS_A_CARD)

@@ -22,7 +22,15 @@ from lacoc_server.match.physics import Fault
 from lacoc_server.world.world import World
 from lacoc_shared import decisions as d
 from lacoc_shared.contest.tokens import new_token_hash
-from lacoc_shared.inputs import HeardSeat, Input, JoinSeat, LeaveSeat, ReadySeat, SilentSeat
+from lacoc_shared.inputs import (
+    THE_COURT,
+    HeardSeat,
+    Input,
+    JoinSeat,
+    LeaveSeat,
+    ReadySeat,
+    SilentSeat,
+)
 from lacoc_shared.messages import Done, Event, Outcome, SeatHealth
 from lacoc_shared.messages.office import open_match
 from lacoc_shared.mistakes import UserError
@@ -160,14 +168,14 @@ def test_a_killed_match_with_a_referee_waits_for_the_referee(tmp_path: Path) -> 
 
 
 def test_a_halted_match_waits_in_silence_and_a_long_silence_ends_it() -> None:
-    """Rules 7: a halted match waits while its seat is silent, and goes on when the seat is heard.
+    """Rules 7: after a halt of the court a match waits while its seat is silent, and then goes on.
 
     After `unattended_s` of silence the match ends, and the next one opens.
     """
     held = Held("practice", None, {"match": {"unattended_s": 10.0}})
     held.begin()
     held.beat(SilentSeat(LEFT))
-    held.beat(decide(d.Halt()))
+    held.beat(decide(d.Halt(), by=THE_COURT))
     assert held.run(LONG).phase is P.HALTED
     held.beat(HeardSeat(LEFT))
     assert held.run(30).phase is P.PLAYING

@@ -12,6 +12,8 @@ import * as t from "../../../client/web/src/core/design/table.ts";
 import { editOf } from "./design_edits.mjs";
 import { COLUMNS, chanceOf, SEQUENCES, sample, walking } from "./design_sample.mjs";
 
+/** How often each page edits; tests that may take long say more. */
+const EDITS = Number(process.env.EDITS ?? 200);
 const contentOf = (table, rest = {}) => ({
   kind: table.kind,
   legs: table.legs.length,
@@ -78,8 +80,8 @@ function deliver(writers) {
 
 // Rows that are inserted at the same time all stay: tables of sequences become long, and slow.
 for (const [first, rounds] of [
-  [sample, 1000],
-  [walking, 300],
+  [sample, EDITS],
+  [walking, 0.3 * EDITS],
 ]) {
   test(`four pages edit and undo ${rounds} times each, with outages, and converge: ${first.kind}`, () => {
     const chance = chanceOf(5);
@@ -119,7 +121,7 @@ test("nothing that somebody typed is lost, unless somebody typed into the same c
   for (const writer of writers) writer.open(begun.state());
   // Each writer has the columns of a leg level; two meet only where they are told to.
   const typed = new Map();
-  for (let number = 1; number <= 1000; number++) {
+  for (let number = 1; number <= EDITS; number++) {
     writers.forEach((writer, who) => {
       const [row, col] = [below(9), 4 * below(4) + who];
       const angle = (number % 149) + who / 10;
