@@ -57,7 +57,7 @@ def sample_gait_files(name_or_path: str) -> FolderGait:
 
 
 def gait_files_in(folder: Path) -> FolderGait:
-    """Read the gait files of a folder; None for a missing file.
+    """Read the two gait files of a folder; a file that is not there is None.
 
     Raises:
         UserError: if a file can't be read.

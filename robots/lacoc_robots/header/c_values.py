@@ -197,7 +197,7 @@ class _Declarations:
             self._at += 1
 
     def _skip_block(self) -> None:
-        """Go behind the bracket that closes the one here."""
+        """Skip a block: from an opening bracket to the token after its closing bracket."""
         depth = 0
         while self._at < len(self._tokens):
             text = self._tokens[self._at].text

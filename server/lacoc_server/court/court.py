@@ -69,7 +69,7 @@ class CourtSettings:
 
 
 class _Made(NamedTuple):
-    """A computed beat, with its frame and the outcomes of its arrivals, which are to be sent."""
+    """A computed beat. Its frame, and the outcomes of what arrived for it, are still to be sent."""
 
     beat: Beat
     frame: bytes

@@ -125,12 +125,12 @@ class SectionFinding:
     """Largest distance from the record, in frames and at the section's end [m, rad]."""
 
     def differ(self, beat: int, what: str, far: bool) -> None:
-        """Note what differs in a beat; of several beats, only the first is kept.
+        """Note what differs in a beat; only the first beat that differs is kept.
 
         Args:
             beat: the beat.
             what: name of what differs (`differs.*`).
-            far: whether the difference is too large for another arithmetic.
+            far: whether the difference is too large to come from another computer's rounding.
         """
         self.bits = _joined(self.bits, beat, what)
         if far:

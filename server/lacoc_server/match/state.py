@@ -336,7 +336,7 @@ class MatchState:
 
         Args:
             event: event of the game.
-            again: whether a take-back made the rules decide it.
+            again: whether the rules judged it again, because an earlier event was taken back.
         """
         said = event.said.with_values(team=self.seats[event.seat].team)
         self.tell(

@@ -183,7 +183,7 @@ class ResumeContest(DeskRequest, frozen=True, kw_only=True, tag="resume"):
 
 
 class Shift(DeskRequest, frozen=True, kw_only=True, tag="shift"):
-    """Make all that is to come later."""
+    """Postpone by `by_ms` everything that has not happened yet."""
 
     by_ms: Annotated[int, msgspec.Meta(ge=60_000, le=86_400_000)]
     reason: _Text = ""

@@ -1,8 +1,8 @@
 """Opens a page in this person's browser, without a secret in a command line.
 
-Every user of a machine can read the command lines of all programs, and a browser gets its address
-there. So an address with a page key is written into a file that only its owner can read. The
-browser opens the file, which redirects to the address.
+Every user of a machine can read the command lines of all programs, and a browser gets the address
+of a page in its command line. So an address with a page key is written into a file that only its
+owner can read. The browser opens the file, which redirects to the address.
 """
 
 import html

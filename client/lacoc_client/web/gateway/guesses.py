@@ -1,4 +1,4 @@
-"""Limits for each of many senders, such as machines that try codes."""
+"""Limits how often requests of each sender pass, and slows down machines that try codes."""
 
 from collections import OrderedDict
 

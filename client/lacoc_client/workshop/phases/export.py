@@ -1,4 +1,4 @@
-"""Writes a class into files for a teacher: evidence as CSV, tables as a zip archive."""
+"""Writes the work of a school class into files for its teacher: evidence as CSV, tables as zip."""
 
 import io
 import re

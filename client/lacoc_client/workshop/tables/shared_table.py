@@ -220,7 +220,11 @@ class SharedTable:
         return self._draft
 
     def _keep_draft(self, before: Mapping[str, Entry]) -> None:
-        """Note that the table has changed; a draft is made only of what may be the last one."""
+        """Note that the table has changed.
+
+        Before a change of more than numbers, the table as it was becomes the draft: it may be the
+        last one that is whole.
+        """
         after = self._document.entries
         changed = (name for name in {*before, *after} if before.get(name) is not after.get(name))
         if self._is_draft_old and not all(isinstance(after.get(name), float) for name in changed):

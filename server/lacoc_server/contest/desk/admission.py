@@ -19,13 +19,13 @@ class Slower(UserError):
 
 
 class Admission:
-    """Looks at the secrets of requests.
+    """Lets in requests that show the right secret.
 
     Args:
         organiser: the organiser's key.
-        staff_of: returns who of the staff has a token; None: nobody has it.
+        staff_of: takes a token; returns the name of who has it among the staff, or None.
         code: returns the event code.
-        team_of: returns the team that has a token; None: nobody has it.
+        team_of: takes a token; returns the team that has it, or None.
     """
 
     def __init__(

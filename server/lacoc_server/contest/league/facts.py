@@ -276,9 +276,9 @@ class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
 
 
 class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
-    """All that is to come becomes later.
+    """Everything that has not happened yet is postponed by `by_ms`.
 
-    No game is called for so long, and appointed times of moved matches are later by so much.
+    No game is called for that time, and appointed times of moved matches are later by it.
     """
 
     by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]

@@ -126,10 +126,10 @@ def _played(
 
 
 def _beats(line: ForkLine, journal: Journal) -> Iterator[tuple[Beat, list[DecisionReply]]]:
-    """Play a fork; yield each beat with the replies to the change's decisions.
+    """Play a fork; yield each beat with the replies to the decisions that the fork adds.
 
     Raises:
-        UserError: if the match refuses a decision of the change.
+        UserError: if the match refuses one of them.
     """
     while True:
         inputs = line.inputs()

@@ -49,13 +49,13 @@ class CoachFound(NamedTuple):
 
 
 def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
-    """Choose the key of level B to change.
+    """Choose which key of level B is changed.
 
     Args:
         gait: the robot's gait.
         goal: what the key is for.
-        key: digit of the key; None: for the goal to turn, the sample's key for this turn; for the
-            goal to go forward, the key of `forward_key`.
+        key: digit of the key. None: the goal says it. To turn, it is the sample's key for that
+            direction; to go forward, the key of `forward_key`.
 
     Raises:
         UserError: if the gait has no such key at level B.

@@ -85,7 +85,10 @@ def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
 
 
 def _angles(table: KeyTable, form: KeyForm) -> Angles | None:
-    """Return the angles of a table's rows [whole deg]; None if a row would need two versions."""
+    """Return the angles of a table's rows [whole deg].
+
+    None: the key uses a row twice, and the repair gives it different angles.
+    """
     postures = np.round(form.angles_deg).astype(int).reshape(form.postures, -1)
     rows: dict[int, tuple[int, ...]] = {}
     for row, posture in zip(table.order, postures, strict=True):

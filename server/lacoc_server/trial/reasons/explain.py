@@ -1,7 +1,8 @@
-"""Explains in at most three sentences why a robot walks as it does, the most useful first.
+"""Explains why a robot walks as it does: at most three sentences, the most useful one first.
 
-Each rule looks for situations of docs/studio.md 3. Its sentence names the leg, the table's cell or
-the figure that shows the situation. A cause in the table usually comes before an effect.
+Each rule finds situations that docs/studio.md 3 lists. Its sentence names the leg, the table's cell
+or the figure that shows the situation. The sentence about a cause in the table usually comes before
+those about its effects.
 """
 
 import math

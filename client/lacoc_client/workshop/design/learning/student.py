@@ -49,7 +49,7 @@ class Student:
         return self.table.draft
 
     def open_kept(self) -> None:
-        """Begin with the table that the diary has read."""
+        """Begin with the table that the diary kept; without one the table stays as it is."""
         kept = kept_table(self.diary.documents)
         if kept is not None:
             with suppress(UserError):  # of another version of this program

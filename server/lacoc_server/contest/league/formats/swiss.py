@@ -191,11 +191,11 @@ def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTe
 
 
 def _colours(player: SwissTeam) -> list[str]:
-    """Say which side a team should get next, as a history of colours for the engine.
+    """Return a history of colours that makes the engine give a team the right side next.
 
-    The engine must change a team's colour only after the same colour twice. Here a team must change
-    sides as soon as it sat on one side once more than on the other. So the engine is told that the
-    team had the colour of this side twice.
+    The engine forces a change only after the same colour twice. Here a team must change as soon as
+    it has sat more often on one side than on the other. So the engine is told that the team had
+    that side's colour twice. If both counts are equal, it is told one of each, the last side last.
     """
     if not player.sides:
         return []
