@@ -298,6 +298,7 @@ def test_a_team_is_told_who_plays_in_its_place() -> None:
     """A team whose place another one took is not thanked for its last match."""
     cup = Cup()
     cup.add(Entered, team="Late", files="f")
+    assert where(cup, {})["Late"].said.code == "team.no-place"
     cup.add(Substituted, team=cup.names[0], substitute="Late", reason="a broken leg")
     said = say("team.substituted", substitute="Late", reason="a broken leg")
     assert where(cup, {})[cup.names[0]].said == said

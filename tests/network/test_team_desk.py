@@ -113,6 +113,32 @@ def test_who_gave_a_time_waits_no_longer(court: CourtStub) -> None:
         pass
 
 
+def test_a_team_that_plays_no_more_waits_until_the_contest_is_over(court: CourtStub) -> None:
+    """A decision may bring back a team that had played its last match; only the end ends its way."""
+    answers = [
+        Whereabouts(team="Ants", state="out", said=say("team.out", place=None)),
+        Whereabouts(team="Ants", state="court", said=say("team.awaits-draw"), call="a call"),
+        Whereabouts(team="Ants", state="over", said=say("team.over", place=None)),
+    ]
+    told: list[Phrase] = []
+
+    def tell(said: Phrase) -> None:
+        told.append(said)
+        if answers:
+            court.teams.tell({seal.hash_token(TOKENS["Ants"], SALT): answers.pop(0)})
+
+    tell(say("team.awaits-draw"))
+    access = Access(court="main", connect=court.address, token=TOKENS["Ants"])
+    with TeamWay(
+        access, any_court=False, patience=Patience(None), tell=tell, stopping=lambda: False
+    ) as way:
+        there = way.next()
+        assert there is not None
+        way.played(there.call)
+        assert way.next() is None
+    assert [one.code for one in told[1:]] == ["team.out", "team.awaits-draw", "team.over"]
+
+
 def test_a_team_asks_another_court_when_its_own_is_gone() -> None:
     """A bot or a terminal with a link goes on when the court that it asked has been killed."""
     ends_s = time.monotonic() + LIMIT_S

@@ -20,6 +20,8 @@ _SOON_S, _LATER_S = 0.5, 2.0
 """Time between two questions: while the team may be called at once, and otherwise."""
 _LATER_FROM_S = 30
 _GONE_S = 5.0
+_OUT_S = 20.0
+"""How long a team that plays no more asks a court that does not answer."""
 
 
 def where(session: Session, court: str, token: str) -> Whereabouts:
@@ -75,6 +77,7 @@ class TeamWay:
         try:
             self._court = self._court_there(access.court)
             self._newest = self._first(patience)
+            self._heard_s = time.monotonic()
         except BaseException:
             self._session.close()
             raise
@@ -104,15 +107,17 @@ class TeamWay:
         """
         while True:
             there = self._newest
-            if there.state in ("out", "over"):
+            if there.state == "over":
                 self._say(there.said)
                 return None
+            if there.state == "out" and time.monotonic() - self._heard_s > _OUT_S:
+                return None  # the event has closed without another word
             if there.open:
                 return there
             if there.state == "court" and there.call != self._past:
                 self._say(there.said)
                 return there
-            if there.state == "waits":
+            if there.state in ("waits", "out"):  # a decision may bring a team back
                 self._say(there.said)
             self._rest(_LATER_S if (there.about_s or 0) > _LATER_FROM_S else _SOON_S)
             self._look()
@@ -166,6 +171,7 @@ class TeamWay:
     def _look(self) -> None:
         try:
             self._newest = self._ask()
+            self._heard_s = time.monotonic()
         except (NotConnected, NoCourt, NotNow) as error:
             self._say(error.phrase)
 

@@ -87,6 +87,9 @@ def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
     gone: Counter[str] = Counter()
     for before, match in found.matches:
         if match is not None:
+            played = len(before.games) if before is not None else 0
+            if played > len(match.games):
+                yield say("decide.played-in-vain", match=named(then, match.pairing.id))
             yield say(
                 "decide.match",
                 match=named(then, match.pairing.id),

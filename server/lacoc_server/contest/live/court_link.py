@@ -250,13 +250,17 @@ class CourtLink:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Teams whose seats nobody has joined, in a match that has not begun."""
+        """Teams that nobody plays for now, in a match that has not begun."""
         if self.phase not in (Phase.LOBBY, Phase.READY):
             return ()
         assert self.frame is not None
         assert self.sheet is not None
         seats = zip(self.sheet.seats, self.frame.seats, strict=False)
-        return tuple(seat.team for seat, now in seats if not now.flags & SeatFlag.JOINED)
+        return tuple(
+            seat.team
+            for seat, now in seats
+            if not now.flags & SeatFlag.JOINED or now.flags & SeatFlag.SILENT
+        )
 
     @property
     def clock_s(self) -> float | None:

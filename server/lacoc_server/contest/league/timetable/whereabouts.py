@@ -205,8 +205,11 @@ def _waits(
 def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
     """Say that a team plays no more, with its place in the newest stage that is over for it."""
     place: Phrase | None = None
-    rank = 0
+    rank, plays = 0, False
     for view in contest.stages:
+        if team not in view.stage.entries:
+            continue
+        place, rank, plays = None, 0, True  # that of an earlier stage is not the last word
         for table in view.tables if view.over else ():
             for row in table.rows:
                 if row.team == team:
@@ -221,7 +224,9 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
                     )
     if over:
         return Whereabouts(team=team, state="over", said=say("team.over", place=place), rank=rank)
-    said = _why_gone(contest, team) or say("team.out", place=place)
+    said = _why_gone(contest, team)
+    if said is None:
+        said = say("team.out", place=place) if plays else say("team.no-place")
     return Whereabouts(team=team, state="out", said=said, rank=rank)
 
 
