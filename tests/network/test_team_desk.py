@@ -114,7 +114,7 @@ def test_who_gave_a_time_waits_no_longer(court: CourtStub) -> None:
 
 
 def test_a_team_that_plays_no_more_waits_until_the_contest_is_over(court: CourtStub) -> None:
-    """A decision may bring back a team that had played its last match; only the end ends its way."""
+    """A decision may bring back a team that had played its last match; only the end ends it."""
     answers = [
         Whereabouts(team="Ants", state="out", said=say("team.out", place=None)),
         Whereabouts(team="Ants", state="court", said=say("team.awaits-draw"), call="a call"),
