@@ -551,18 +551,21 @@ def test_who_wants_less_motion_gets_it(venue: Venue, open_page: OpenPage) -> Non
     venue.court()
     venue.web()
     playing(venue)
-    eyes = {}
+    eyes: dict[str, float] = {}
     for motion in ("no-preference", "reduce"):
         show = Show(open_page(viewport=LAPTOP, reduced_motion=motion), venue.url, "/watch?q=low")
         show.sees(".foot .cameras")
         show.moves()
-        before = show.view("eye")
-        beat = show.view("drawnBeat")
-        show.until(lambda: show.view("drawnBeat") > beat + 50, "the picture stands still")  # noqa: B023
-        eyes[motion] = np.subtract(show.view("eye"), before)
+        moved = []
+        for _ in range(5):
+            before = show.view("eye")
+            beat = show.view("drawnBeat")
+            show.until(lambda: show.view("drawnBeat") > beat + 50, "the picture stands still")  # noqa: B023
+            moved.append(np.abs(np.subtract(show.view("eye"), before)).max())
+        eyes[motion] = min(moved)  # what comes over the picture makes the field fit anew, once
         show.page.close()
-    assert np.abs(eyes["no-preference"]).max() > 1e-4
-    assert np.abs(eyes["reduce"]).max() == 0
+    assert eyes["no-preference"] > 1e-4
+    assert eyes["reduce"] == 0
 
 
 @pytest.mark.long
