@@ -294,6 +294,24 @@ def test_before_the_first_draw_all_wait() -> None:
     assert codes() == {"team.draw-taken-back"}
 
 
+def test_a_team_that_came_back_is_not_told_that_it_left() -> None:
+    """A team that withdrew and entered again has a place or none, but it has not left."""
+    event = Event(3, 1, Random(1))
+    event.add(Planned, stage="cup", format="round-robin", settings=StageSettings())
+    back = event.names[0]
+
+    def code() -> str:
+        found = found_for(event.contest, SeenCourts({}, {}), ContestPace(0, GAME))
+        return found[back].said.code
+
+    event.add(Withdrawn, team=back)
+    assert code() == "team.withdrawn"
+    event.add(Entered, team=back, files="f")
+    event.add(Closed)
+    event.add(Drawn, stage="cup", entries=tuple(event.names[1:]))
+    assert code() == "team.no-place"
+
+
 def test_a_team_is_told_who_plays_in_its_place() -> None:
     """A team whose place another one took is not thanked for its last match."""
     cup = Cup()

@@ -451,8 +451,8 @@ def end_ms(begin_ms: int, length_ms: int) -> int:
 
     One of a minute or more ends at a full minute: pages tell it so, and nobody is called before.
     """
-    end_ms = begin_ms + length_ms
-    return end_ms if length_ms < _MINUTE_MS else -(-end_ms // _MINUTE_MS) * _MINUTE_MS
+    ends_ms = begin_ms + length_ms
+    return ends_ms if length_ms < _MINUTE_MS else -(-ends_ms // _MINUTE_MS) * _MINUTE_MS
 
 
 def _day(facts: Sequence[AnyFact]) -> Day:

@@ -17,7 +17,7 @@ from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase
 
-_FORMAT = 2
+_FORMAT = 3
 """Version of the layout; bytes of another one are refused."""
 
 
@@ -63,6 +63,7 @@ class _SavedMatch(msgspec.Struct, frozen=True, array_like=True):
     advice: tuple[Phrase | str, ...]
     next_wanted: bool
     fault: Fault | None
+    halted_by: str
     event_count: int
     sheet_is_new: bool
     told_result: tuple[str, tuple[int, ...]] | None

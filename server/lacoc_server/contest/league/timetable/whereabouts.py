@@ -224,14 +224,15 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
                     )
     if over:
         return Whereabouts(team=team, state="over", said=say("team.over", place=place), rank=rank)
-    said = _why_gone(contest, team)
+    is_gone = any(one.name == team and one.gone for one in contest.teams)  # it may have come back
+    said = _why_gone(contest, team) if is_gone else None
     if said is None:
         said = say("team.out", place=place) if plays else say("team.no-place")
     return Whereabouts(team=team, state="out", said=said, rank=rank)
 
 
 def _why_gone(contest: Contest, team: str) -> Phrase | None:
-    """Say why a team has left the contest, by the newest decision about it; None: it has not."""
+    """Say why a team left the contest, by the newest decision about it; None: by none."""
     for fact in reversed(contest.decisions):
         match fact:
             case Substituted(team=name) if name == team:
