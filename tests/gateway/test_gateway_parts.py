@@ -32,13 +32,16 @@ from lacoc_client.play.controller import Hold
 from lacoc_client.web.gateway import home, page_seat, page_socket, published, server, wire
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.browser import open_browser
+from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.guard import Guard
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.rules_route import rules_route
 from lacoc_client.web.gateway.site import PATHS, sheet_route
+from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Frames, Viewer
+from lacoc_shared.codec import encode
 from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
@@ -290,6 +293,25 @@ def test_the_courts_list_stands_for_the_log() -> None:
     assert [one.number for one in log.restore([(event(1, "b"), "b 1")])] == [1]
     assert (list(log), log.number) == (["b 1"], 2)
     assert (log.restore([]), list(log), log.number) == ([], [], 3)
+
+
+def test_events_that_come_before_an_older_list_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An event that comes while a list without it is under way is taken in after the list."""
+    threads = Threads(1)
+    feed = CourtFeed(Access(court="main", connect="tcp/127.0.0.1:1"), threads)
+
+    async def listed(key: str) -> bytes:
+        feed._take_event(encode(event(2)))
+        return encode((event(1),))
+
+    async def known() -> int:
+        await feed._fetch_log()
+        feed._take_event(encode(event(3)))
+        return len(feed.picture.log)
+
+    monkeypatch.setattr(feed, "_ask", listed)
+    assert run_async(known) == 3
+    threads.close()
 
 
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
