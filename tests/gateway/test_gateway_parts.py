@@ -468,7 +468,7 @@ def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes
 
 def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of a request ends no WebSocket, however long it is open."""
-    monkeypatch.setattr(page_socket, "REQUEST_S", 0.05)
+    monkeypatch.setattr(page_socket, "REQUEST_S", 0.5)
 
     async def app(scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "websocket":
@@ -481,7 +481,7 @@ def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.Monkey
     thread.start()
     try:
         with connect(f"ws://127.0.0.1:{opened.socket.getsockname()[1]}/") as page:
-            time.sleep(0.3)
+            time.sleep(0.8)
             page.send("still here")
             assert page.recv(LIMIT_S) == "still here"
     finally:
