@@ -13,6 +13,7 @@ from lacoc_server.contest.league.facts import (
     Disqualified,
     Drawn,
     Entered,
+    NoShow,
     Paused,
     Planned,
     Played,
@@ -320,6 +321,29 @@ def test_a_team_is_told_who_plays_in_its_place() -> None:
     cup.add(Substituted, team=cup.names[0], substitute="Late", reason="a broken leg")
     said = say("team.substituted", substitute="Late", reason="a broken leg")
     assert where(cup, {})[cup.names[0]].said == said
+
+
+def test_teams_are_told_what_was_decided_about_their_match() -> None:
+    """Whose opponent did not come reads why the match is won, until the team plays again."""
+    cup = Cup()
+    first = cup.contest.stages[0].matches[0]
+    here, absent = first.teams
+    assert here
+    assert absent
+    cup.add(NoShow, pairing=first.pairing.id, team=absent, reason="not seen since noon")
+    found = where(cup, {})
+    for team in (here, absent):
+        news = found[team].news
+        assert news is not None
+        assert faults(news) == []
+        assert f"{absent} did not come. Reason: not seen since noon" in render(news)
+    assert [there.news for name, there in found.items() if name not in first.teams] == [None] * 2
+    cup.now_ms += 60_000
+    later = next(match for match in cup.contest.stages[0].matches[1:] if here in match.teams)
+    assert later.next_seats is not None
+    cup.won(later.pairing.id, later.next_seats)
+    assert where(cup, {})[here].news is None
+    assert where(cup, {})[absent].news is not None
 
 
 def test_what_can_be_played_before_the_first_draw() -> None:

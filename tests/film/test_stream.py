@@ -151,7 +151,8 @@ class VideoServer:
     def close(self) -> None:
         """End the connection."""
         self._closing = True
-        self._thread.join()
+        self._thread.join(LIMIT_S)
+        assert not self._thread.is_alive(), "no packet came, and the connection did not end"
 
 
 @pytest.mark.long

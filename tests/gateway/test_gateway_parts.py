@@ -32,13 +32,16 @@ from lacoc_client.play.controller import Hold
 from lacoc_client.web.gateway import home, page_seat, page_socket, published, server, wire
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.browser import open_browser
+from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.guard import Guard
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.rules_route import rules_route
 from lacoc_client.web.gateway.site import PATHS, sheet_route
+from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Frames, Viewer
+from lacoc_shared.codec import encode
 from lacoc_shared.contest.access import Access
 from lacoc_shared.keyspace import EVENTS_LISTED
 from lacoc_shared.messages import Event
@@ -292,6 +295,25 @@ def test_the_courts_list_stands_for_the_log() -> None:
     assert (log.restore([]), list(log), log.number) == ([], [], 3)
 
 
+def test_events_that_come_before_an_older_list_stay(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An event that comes while a list without it is under way is taken in after the list."""
+    threads = Threads(1)
+    feed = CourtFeed(Access(court="main", connect="tcp/127.0.0.1:1"), threads)
+
+    async def listed(key: str) -> bytes:
+        feed._take_event(encode(event(2)))
+        return encode((event(1),))
+
+    async def known() -> int:
+        await feed._fetch_log()
+        feed._take_event(encode(event(3)))
+        return len(feed.picture.log)
+
+    monkeypatch.setattr(feed, "_ask", listed)
+    assert run_async(known) == 3
+    threads.close()
+
+
 def test_the_newest_of_a_very_long_log_are_kept() -> None:
     """A log keeps only its newest events, as a court does, and still counts as complete."""
     log: EventLog[int] = EventLog()
@@ -446,7 +468,7 @@ def test_half_a_request_is_given_up(monkeypatch: pytest.MonkeyPatch, part: bytes
 
 def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of a request ends no WebSocket, however long it is open."""
-    monkeypatch.setattr(page_socket, "REQUEST_S", 0.05)
+    monkeypatch.setattr(page_socket, "REQUEST_S", 0.5)
 
     async def app(scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "websocket":
@@ -459,7 +481,7 @@ def test_a_page_stays_connected_longer_than_a_request(monkeypatch: pytest.Monkey
     thread.start()
     try:
         with connect(f"ws://127.0.0.1:{opened.socket.getsockname()[1]}/") as page:
-            time.sleep(0.3)
+            time.sleep(0.8)
             page.send("still here")
             assert page.recv(LIMIT_S) == "still here"
     finally:

@@ -114,10 +114,16 @@ def test_who_gave_a_time_waits_no_longer(court: CourtStub) -> None:
 
 
 def test_a_team_that_plays_no_more_waits_until_the_contest_is_over(court: CourtStub) -> None:
-    """A decision may bring back a team that had played its last match; only the end ends it."""
+    """A decision may bring back a team that had played its last match; only the end ends it.
+
+    What was decided about its match is told once.
+    """
+    news = say("team.news", what=say("decided.no-show", match="Final", team="Bees"), reason=None)
     answers = [
         Whereabouts(team="Ants", state="out", said=say("team.out", place=None)),
-        Whereabouts(team="Ants", state="court", said=say("team.awaits-draw"), call="a call"),
+        Whereabouts(
+            team="Ants", state="court", said=say("team.awaits-draw"), call="a call", news=news
+        ),
         Whereabouts(team="Ants", state="over", said=say("team.over", place=None)),
     ]
     told: list[Phrase] = []
@@ -136,7 +142,8 @@ def test_a_team_that_plays_no_more_waits_until_the_contest_is_over(court: CourtS
         assert there is not None
         way.played(there.call)
         assert way.next() is None
-    assert [one.code for one in told[1:]] == ["team.out", "team.awaits-draw", "team.over"]
+    codes = [one.code for one in told[1:]]
+    assert codes == ["team.out", "team.news", "team.awaits-draw", "team.over"]
 
 
 def test_a_team_asks_another_court_when_its_own_is_gone() -> None:

@@ -69,6 +69,7 @@ class TeamWay:
         self._tell = tell
         self._stopping = stopping
         self._said: Phrase | None = None
+        self._news: Phrase | None = None
         self._past = ""
         """The call that the team has played."""
         self._session = patience.until(
@@ -78,6 +79,7 @@ class TeamWay:
             self._court = self._court_there(access.court)
             self._newest = self._first(patience)
             self._heard_s = time.monotonic()
+            self._tell_news()
         except BaseException:
             self._session.close()
             raise
@@ -172,8 +174,15 @@ class TeamWay:
         try:
             self._newest = self._ask()
             self._heard_s = time.monotonic()
+            self._tell_news()
         except (NotConnected, NoCourt, NotNow) as error:
             self._say(error.phrase)
+
+    def _tell_news(self) -> None:
+        news, before = self._newest.news, self._news
+        self._news = news
+        if news is not None and news != before:
+            self._tell(news)
 
     def _say(self, what: Phrase) -> None:
         if what != self._said:

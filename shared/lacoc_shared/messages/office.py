@@ -204,6 +204,8 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
     """Whether the seat is open: whoever sits down there brings a name and files."""
     rank: int = 0
     """Rank in the newest stage that is over and has the team; 0: none."""
+    news: Phrase | None = None
+    """What people decided about a match of the team, since its last game; None: nothing."""
 
 
 class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):

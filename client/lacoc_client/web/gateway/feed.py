@@ -61,6 +61,10 @@ class CourtFeed:
         """Whether the court sends frames in this gateway's version; only then pages get them."""
         self._why: Phrase | None = None
         """Why the court sends no frames."""
+        self._logs_asked = 0
+        """Number of requests for the list of events whose answer is under way."""
+        self._held_events: list[bytes] = []
+        """The events that came meanwhile."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -226,7 +230,7 @@ class CourtFeed:
         hear(self._keys.event, _EVENTS_DEPTH, self._take_event)
         with contextlib.suppress(UserError, BadMessage):  # they come later
             await self._fetch_sheet()
-            self._take_log(await self._ask(self._keys.event))
+            await self._fetch_log()
         hear(self._keys.health, 1, self._take_health)
         hear(self._keys.frame, 1, self._take_frame)
 
@@ -245,6 +249,9 @@ class CourtFeed:
             self._catch_up()
 
     def _take_event(self, payload: bytes) -> None:
+        if self._logs_asked:
+            self._held_events.append(payload)
+            return
         number = self._log_number
         try:
             framed = self.picture.take_event(payload)
@@ -340,7 +347,7 @@ class CourtFeed:
         while view.lacks_events or view.lacks_scene or view.lacks_sheet:
             with contextlib.suppress(UserError, BadMessage):  # the court went away
                 if view.lacks_events:
-                    self._take_log(await self._ask(self._keys.event))
+                    await self._fetch_log()
                 if view.lacks_scene:
                     self._take_scene(await self._ask(self._keys.scene))
                 if view.lacks_sheet:
@@ -348,6 +355,17 @@ class CourtFeed:
             await asyncio.sleep(_FETCH_AGAIN_S)
             if not self._connected:
                 return  # the next frame or health asks again
+
+    async def _fetch_log(self) -> None:
+        """Fetch the list of events, then take in those that came meanwhile: the list lacks them."""
+        self._logs_asked += 1
+        try:
+            self._take_log(await self._ask(self._keys.event))
+        finally:
+            self._logs_asked -= 1
+            held, self._held_events = self._held_events, []
+            for payload in held:  # held again while another answer is under way
+                self._take_event(payload)
 
     async def _fetch_sheet(self) -> None:
         payload, before = await self._ask(self._keys.sheet), self._other_version

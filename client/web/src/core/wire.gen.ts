@@ -346,6 +346,7 @@ export interface Whereabouts {
   about_s: number | null;
   open: boolean;
   rank: number;
+  news: Phrase | null;
 }
 
 export interface ForkSeat {

@@ -35,6 +35,7 @@ export function TeamCard({ court, team }: Props) {
         <h1 id="entrance-title">{there.team}</h1>
       </div>
       <div role="status" class="coming">
+        {there.news && <p>{said(there.news)}</p>}
         {!isOver && <p>{t("team.nextMatch")}</p>}
         {PLAYED.has(there.said.code) && <p>{t("team.thanks")}</p>}
         <strong>{said(there.said)}</strong>

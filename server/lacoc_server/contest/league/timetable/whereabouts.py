@@ -10,7 +10,10 @@ from statistics import median
 from string import ascii_lowercase
 from typing import NamedTuple
 
+from msgspec.structs import replace
+
 from lacoc_server.contest.league.contest import Contest, StageView
+from lacoc_server.contest.league.decided import decided
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
@@ -136,7 +139,19 @@ def whereabouts(
             found[name] = Whereabouts(team=name, state="waits", said=_awaits_draw(contest))
         else:
             found[name] = _ended(contest, name, over=False)
-    return found
+    news = _news(contest)
+    return {name: replace(there, news=news.get(name)) for name, there in found.items()}
+
+
+def _news(contest: Contest) -> dict[str, Phrase]:
+    """Say what people decided about a match of each team since its last game; the newest only."""
+    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    news: dict[str, Phrase] = {}
+    for one in decided(contest):
+        for team in matches[one.pairing].teams if one.pairing in matches else ():
+            if team and one.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
+                news[team] = say("team.news", what=one.what, reason=one.reason or None)
+    return news
 
 
 def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Whereabouts:
