@@ -78,6 +78,7 @@ def opened(venue: Venue, sit: Sit, **options: object) -> Contestant:
     return page
 
 
+@pytest.mark.long
 def test_a_match_by_keyboard_alone(venue: Venue, sit: Sit) -> None:
     """A contestant and a referee who have no mouse bring a match to its official result."""
     page = opened(venue, sit)

@@ -136,6 +136,7 @@ def test_a_foot_is_dragged_by_touch_on_a_phone(own: OwnPage, open_page: OpenPage
             expect(handle).not_to_have_attribute("aria-valuetext", before or "")
 
 
+@pytest.mark.long
 def test_a_student_of_a_class_comes_back_to_where_she_was(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:

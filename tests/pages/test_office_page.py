@@ -51,6 +51,7 @@ def enter(open_page: OpenPage, event: Event, team: str) -> Page:
     return page
 
 
+@pytest.mark.long(minutes=1)
 def test_an_event_from_its_file_to_its_first_game(
     event: Event, open_page: OpenPage, console: Any
 ) -> None:

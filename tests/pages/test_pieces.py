@@ -42,6 +42,7 @@ def test_nobody_is_sent_away(venue: Venue, open_page: OpenPage, console: Any) ->
     """A page without a place sees the match in pieces, and moves back and forth in its middle."""
     console.expect_a_break()
     console.expect("404")  # of a piece that is not whole yet
+    console.expect("INTERNET_DISCONNECTED")
     venue.court()
     web = venue.web(*ONE)
     playing(venue)

@@ -176,6 +176,7 @@ def test_four_browsers_of_one_group_converge(
     pages[3].until(f"window.__studio?.sheet.digest.value === '{last}'")
 
 
+@pytest.mark.long
 def test_four_students_make_one_gait(room: ClassRoom, open_page: OpenPage, console: Any) -> None:
     """Four students share a table with roles and a word; an outage loses nothing.
 

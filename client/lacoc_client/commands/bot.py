@@ -83,8 +83,7 @@ def bot_command(
     """Let a bot hold a seat: it joins, says ready and plays, match after match.
 
     With the link of a team it goes from court to court, wherever the office of the contest calls
-    the team, until the contest is over for it. At an open seat it plays with its own name and
-    files.
+    the team, until the contest is over. At an open seat it plays with its own name and files.
 
     The bot ends with Ctrl-C. At an open seat it also ends when it loses the seat, or when the court
     has been gone for two minutes (or for the time of --wait, if that is longer). Your own bot is a

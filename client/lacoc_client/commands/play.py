@@ -74,8 +74,7 @@ def play_command(
     """Hold a seat and steer your robot with the keyboard.
 
     Your link says who you are. In a contest you are told when and where you play next, and go from
-    court to court until the contest is over for your team. At an open seat you play with your own
-    name and files.
+    court to court until the contest is over. At an open seat you play with your own name and files.
 
     A page opens in your browser; only this machine can open it. The page already has what you give
     here, and you can enter the rest there.
