@@ -179,7 +179,10 @@ class Court:
         self._archive.close()
 
     def _choose_priority(self) -> None:
-        """Go before other programs, unless that left nothing to them: then there is always work."""
+        """Raise this process's priority while it keeps real time; else take turns with others.
+
+        A court that is behind always has work: with a high priority it would starve the others.
+        """
         if self._settings.speed <= 1 and self._pace.real_time_factor > _LEAST_FACTOR:
             go_first()
         else:

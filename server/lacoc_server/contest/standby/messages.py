@@ -90,7 +90,7 @@ class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="
 
 
 class Got(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="got"):
-    """A part of something, or of a record."""
+    """A part of a small file, or of a record."""
 
     part: Copied
 
