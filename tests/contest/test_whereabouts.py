@@ -338,12 +338,18 @@ def test_teams_are_told_what_was_decided_about_their_match() -> None:
         assert faults(news) == []
         assert f"{absent} did not come. Reason: not seen since noon" in render(news)
     assert [there.news for name, there in found.items() if name not in first.teams] == [None] * 2
-    cup.now_ms += 60_000
+    cup.add(Entered, team="Late", files="f")
+    cup.add(Substituted, team=absent, substitute="Late", reason="a broken leg")
+    found = where(cup, {})
+    assert (found["Late"].news, found[here].news) == (None, None), "the match is open again"
     later = next(match for match in cup.contest.stages[0].matches[1:] if here in match.teams)
     assert later.next_seats is not None
+    cup.add(NoShow, pairing=first.pairing.id, team="Late")
+    assert where(cup, {})[here].news is not None
+    cup.now_ms += 60_000
     cup.won(later.pairing.id, later.next_seats)
     assert where(cup, {})[here].news is None
-    assert where(cup, {})[absent].news is not None
+    assert where(cup, {})["Late"].news is not None
 
 
 def test_what_can_be_played_before_the_first_draw() -> None:

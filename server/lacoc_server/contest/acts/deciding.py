@@ -1,7 +1,7 @@
 """Decisions about a match: the fact of each one, and what it would change."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from typing import Literal, NamedTuple
 
 import msgspec
@@ -12,6 +12,7 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     NoShow,
     Outcome,
+    Played,
     Replaced,
     Replay,
     Voided,
@@ -69,11 +70,11 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     lines = [
         *(say("decide.leaves", team=team, left=here) for team in found.leaving),
         *_matches(found, was, then),
-        *_at_courts(was, then),
+        *_at_courts(was, then, {fact.pairing for fact in placed if isinstance(fact, Played)}),
         *(
             line
             for fact in placed
-            if isinstance(fact, Replaced)
+            if isinstance(fact, Played | Replaced)
             for line in _meaning(was, then, fact)
         ),
         *_ranks(found, then),
@@ -103,11 +104,11 @@ def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
         yield say("decide.gone", stage=title(was, stage), matches=count)
 
 
-def _at_courts(was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say which games courts give back."""
+def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[Phrase]:
+    """Say which games courts give back: those that are not needed then, and have not ended."""
     stay = {call.id for call in needed(then)}
     for call in was.running:
-        if call.id not in stay:
+        if call.id not in stay and call.pairing not in ended:
             match = named(was, call.pairing)
             yield say("decide.taken-back", court=call.court, match=match, teams=call.teams)
 
@@ -158,7 +159,7 @@ def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
         yield say("contest.seed-moved", team=team, why=why)
 
 
-def _meaning(was: Contest, then: Contest, result: Replaced) -> Iterator[Phrase]:
+def _meaning(was: Contest, then: Contest, result: Played | Replaced) -> Iterator[Phrase]:
     """Say what a result means: how its match stands then, and what both teams play next.
 
     Nothing is said of a result that counts already.
@@ -194,7 +195,7 @@ def _meaning(was: Contest, then: Contest, result: Replaced) -> Iterator[Phrase]:
             yield say("decide.plays-no-more", team=team)
 
 
-def _counts(contest: Contest, result: Replaced) -> bool:
+def _counts(contest: Contest, result: Played | Replaced) -> bool:
     """Return whether a game counts with a result already."""
     return any(
         (game.number, game.teams, game.scores, game.outcome)

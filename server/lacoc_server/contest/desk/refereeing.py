@@ -3,7 +3,7 @@
 from lacoc_server.contest.acts import deciding
 from lacoc_server.contest.desk import overview
 from lacoc_server.contest.desk.book import Book
-from lacoc_server.contest.league.facts import Replaced, new
+from lacoc_server.contest.league.facts import Played, new
 from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_shared.messages.desk import CourtDay, CourtPlan
 from lacoc_shared.words import Phrase
@@ -33,12 +33,11 @@ def _changes(book: Book, asked: CourtDay) -> tuple[Phrase, ...]:
     if call is None or asked.scores is None:
         return ()
     result = new(
-        Replaced,
+        Played,
         pairing=call.pairing,
         game=call.game,
         teams=call.teams,
         scores=asked.scores,
         outcome=asked.outcome,
-        reason="preview",
     )
     return deciding.effect(book.facts, [result])

@@ -144,11 +144,17 @@ def whereabouts(
 
 
 def _news(contest: Contest) -> dict[str, Phrase]:
-    """Say what people decided about a match of each team since its last game; the newest only."""
+    """Say what people decided about a match of each team since its last game; the newest only.
+
+    A decision that changes nothing is no news, such as one about a team that was substituted since.
+    """
     matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    unused = {one.fact for one in contest.unused}
     news: dict[str, Phrase] = {}
     for one in decided(contest):
-        for team in matches[one.pairing].teams if one.pairing in matches else ():
+        if one.fact in unused or one.pairing not in matches:
+            continue
+        for team in matches[one.pairing].teams:
             if team and one.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
                 news[team] = say("team.news", what=one.what, reason=one.reason or None)
     return news
