@@ -52,7 +52,7 @@ def test_it_ends_on_the_result_with_the_replay(demo: str, open_page: OpenPage) -
     """After the demo the page shows the result without an alarm, and a link to the replay."""
     show = Show(open_page(), demo, "/watch?q=low")
     show.sees(".result h1")
-    show.sees(".banner.calm", "The match is over, and its court has closed.")
+    show.sees(".banner.calm", "The match is over. Its court does not answer now.")
     show.misses(".scene.stale")
     show.find(".result a", has_text="Watch the replay").click()
     show.sees(".replay .score-bug .team", "planner")

@@ -212,7 +212,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     show.sees(".result h1", "The match is void")
     assert show.find(".result .won").count() == 0
     court.kill()  # after the end of a match nothing is missing without its court
-    show.sees(".banner.calm", "The match is over, and its court has closed.")
+    show.sees(".banner.calm", "The match is over. Its court does not answer now.")
     show.misses(STALE)
 
 

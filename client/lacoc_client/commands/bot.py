@@ -104,7 +104,7 @@ def bot_command(
                 try:
                     over = _play_match(name, way, there, arena, stopping)
                 except (NotConnected, NoCourt, NotNow) as error:
-                    screen.note(error.phrase)
+                    way.tell_trouble(error)
                     over = False
                 if stopping():
                     return

@@ -179,7 +179,7 @@ def follow(
                     if not _play_match(way, there, team, files, keys, stopping, ready=ready):
                         return
                 except (NotConnected, NoCourt, NotNow) as error:
-                    screen.note(error.phrase)
+                    way.tell_trouble(error)
                     way.again()
 
 

@@ -14,7 +14,7 @@ from lacoc_shared.keyspace import EVERY_COURT, KeySpace
 from lacoc_shared.messages.office import Where, Whereabouts
 from lacoc_shared.network.session import NotConnected, Session, open_client
 from lacoc_shared.seat import Phase
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 _SOON_S, _LATER_S = 0.5, 2.0
 """Time between two questions: while the team may be called at once, and otherwise."""
@@ -176,7 +176,14 @@ class TeamWay:
             self._heard_s = time.monotonic()
             self._tell_news()
         except (NotConnected, NoCourt, NotNow) as error:
-            self._say(error.phrase)
+            self.tell_trouble(error)
+
+    def tell_trouble(self, error: NotConnected | NoCourt | NotNow) -> None:
+        """Say why the team has to wait.
+
+        A court of a contest that is away is started again by its office: a team has nothing to do.
+        """
+        self._say(error.phrase if isinstance(error, NotNow) else say("team.court-away"))
 
     def _tell_news(self) -> None:
         news, before = self._newest.news, self._news

@@ -24,6 +24,8 @@ export class Team {
   readonly isOn: ReadonlySignal<boolean>;
   /** What a court said last of the token. */
   readonly there = signal<Whereabouts | null>(null);
+  /** Whether the team plays no more, as far as is decided. */
+  readonly isOver = computed(() => ["out", "over"].includes(this.there.value?.state ?? ""));
   /** Why the token was refused. */
   readonly refusal = signal<Refused | null>(null);
   /** Whether somebody else drives the team's seat now, and this page must not take it unasked. */

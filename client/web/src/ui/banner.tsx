@@ -108,8 +108,14 @@ export function NoticeBanner({ notice }: { notice: Notice | null }) {
   );
 }
 
-export function LinkBanner({ court }: { court: Court }) {
-  const over = useComputed(() => isOver(court)).value;
+interface LinkProps {
+  court: Court;
+  /** Whether the reader's matches are over, so that a court that is away is nobody's trouble. */
+  done?: boolean;
+}
+
+export function LinkBanner({ court, done = false }: LinkProps) {
+  const over = useComputed(() => isOver(court)).value || done;
   if (court.outdated.value) {
     return (
       <Banner role="alert">

@@ -180,7 +180,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
   };
   return (
     <main class={`player${isIn ? "" : " outside"}`} data-standing={standing}>
-      <LinkBanner court={court} />
+      <LinkBanner court={court} done={Boolean(team?.isOver.value)} />
       <Field
         {...{ court, player, alone, tryOut, view, hasFocus, hasInputMethod, field }}
         urgent={

@@ -26,7 +26,7 @@ export function TeamCard({ court, team }: Props) {
       </section>
     );
   }
-  const isOver = there.state === "out" || there.state === "over";
+  const isOver = team.isOver.value;
   const own = `contest#team=${encodeURIComponent(there.team)}`;
   return (
     <section class="card entrance" aria-labelledby="entrance-title" data-state={there.state}>
