@@ -48,11 +48,11 @@ class FilmPart:
         return list(self.chosen) or moments.by_score(self.record)
 
     def shots(self, first: int, last: int) -> list[Shot]:
-        """Return what is shown of the match.
+        """Return the shots of the match, in order.
 
         Args:
-            first: beat at which a replay begins.
-            last: beat at which it ends.
+            first: the first beat that may be shown.
+            last: the last one.
         """
         if self.count is None:
             return plan.whole(first, last)

@@ -62,7 +62,7 @@ class MatchLine(OutputLine, frozen=True, tag="match"):
 
 
 class StandingsLine(OutputLine, frozen=True, tag="standings"):
-    """Standings after a match."""
+    """An output line with the standings after a match."""
 
     done: int
     standings: tuple[PlayerStanding, ...]

@@ -168,8 +168,8 @@ def simulate_section(section: Section, worlds: Worlds, bound: float = BOUND) -> 
     Args:
         section: what to simulate.
         worlds: gives the section's world, which afterwards is in the state of the section's end.
-        bound: largest distance that another arithmetic may reach [m, rad]; where the simulation is
-            farther from the record, it stops.
+        bound: largest difference from the record that another arithmetic explains [m, rad]; where
+            the difference is larger, the simulation stops.
     """
     found = SectionFinding(section.first_beat, section.last_beat)
     try:

@@ -181,10 +181,14 @@ def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> Non
 
 
 def beside(folder: Path, name: str) -> str:
-    """Return an installed name unchanged; resolve a path from the contest file's folder.
+    """Return the name of something installed unchanged, and a path from a folder as a full path.
+
+    Args:
+        folder: folder of the contest file.
+        name: a name, or a path: it has a slash or a point.
 
     Raises:
-        UserError: if it is no path.
+        UserError: if the system can't read the path.
     """
     is_path = "/" in name or "." in name or "\\" in name
     try:

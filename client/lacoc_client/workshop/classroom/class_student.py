@@ -39,7 +39,7 @@ class ClassStudent(Student):
         self._last: Card | None = None
 
     def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
-        """Begin with what the class file has of this student, in the file's order."""
+        """Load what the class file has of this student, in the file's order."""
         documents = list(documents)
         self.diary.begin((one.evidence for one in evidence), documents)
         self.open_kept()

@@ -240,7 +240,7 @@ class Classroom:
         """Put a student into a group, or out of it ("").
 
         Raises:
-            UserError: if the group is full, or the name is none.
+            UserError: if the group is full, or its name is not allowed.
         """
         if name:
             await self.groups.join(student, name)

@@ -161,10 +161,10 @@ def undrawable(contest: Contest) -> str:
 
 
 def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undrawn]:
-    """Take the draw of a stage back; it waits until the organiser draws it again.
+    """Take the draw of a stage back; the stage then waits until the organiser draws it again.
 
     Returns:
-        The draw that is taken back, after the games that courts have of it.
+        Facts: those that take the stage's games from courts, then the one that takes the draw back.
 
     Raises:
         UserError: if no stage is named, it is not drawn, a game of it has a result, another stage

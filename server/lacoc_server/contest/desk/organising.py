@@ -35,8 +35,8 @@ def approve(book: Book, asked: Approve) -> Said:
     """Let teams take part, come back while entries are open, or use their late files.
 
     Raises:
-        UserError: if a team has not applied or can't come back, entries are closed, or a reason is
-            missing. Teams earlier in the list than this team have been let in then.
+        UserError: if a team has neither applied nor been here before, if it can't come back, or if
+            a reason is missing. The teams before it in the list stay approved.
     """
     said: list[Phrase] = []
     for team in asked.teams:

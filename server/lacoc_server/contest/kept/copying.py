@@ -42,12 +42,12 @@ def have(folder: Path, match_id: str) -> dict[str, int]:
 
 
 def take(folder: Path, match_id: str, part: Copied) -> Taken:
-    """Add a part to the copy of a match's record; anything else is not written.
+    """Add a part to the copy of a match's record; a part that does not continue it is dropped.
 
     Args:
         folder: folder of the records; it is made.
         match_id: the match.
-        part: the answer to a question with what is here (`have`).
+        part: what the other machine answered when it was told what this copy has (`have`).
 
     Raises:
         UserError: if it can't be written.

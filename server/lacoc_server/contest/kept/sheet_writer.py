@@ -64,7 +64,7 @@ class SheetWriter:
             self.write()
 
     def write(self) -> ContestSheet:
-        """Write the sheet of the contest as everybody may see it now; return the whole one.
+        """Write the sheet without what is still secret, for everybody; return the complete sheet.
 
         Raises:
             UserError: if it can't be written.
