@@ -2,7 +2,6 @@
 
 import os
 import signal
-from itertools import groupby
 
 import pytest
 from hypothesis import settings
@@ -55,19 +54,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
-    """Return the tests reordered, so that each process has enough to do while a test waits.
-
-    Files are dealt to the processes: else some would have all tests that wait for a browser, and
-    others all that compute. Each process begins with its share of the tests that take minutes.
+    """Return the tests reordered: each process begins with its share of those that take minutes.
 
     Args:
         items: the tests, in the order of their files.
         processes: number of processes; each gets an equal part of the order.
     """
     slow = sorted((item for item in items if minutes(item)), key=minutes, reverse=True)
-    files = [[*tests] for _, tests in groupby(items, key=lambda item: item.path)]
-    dealt = [file for first in range(processes) for file in files[first::processes]]
-    ordered = [item for file in dealt for item in file if not minutes(item)]
+    ordered = [item for item in items if not minutes(item)]
     for number, item in enumerate(slow):
         ordered.insert(number % processes * -(-len(items) // processes), item)
     return ordered
