@@ -29,11 +29,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def room(folder: Path, built_pages: Path) -> Iterator[ClassRoom]:
+def ending() -> Iterator[ExitStack]:
+    """Give what is closed after the last test of this file."""
+    with ExitStack() as stack:
+        yield stack
+
+
+@pytest.fixture(scope="module")
+def room(folder: Path, built_pages: Path, ending: ExitStack) -> ClassRoom:
     """Give a class that the tests of this file share, each with students of its own."""
     room = ClassRoom(folder)
-    yield room
-    room.close()
+    ending.callback(room.close)
+    return room
 
 
 class Pupil(Designer):
@@ -152,7 +159,7 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
 
 
 def test_goes_on_after_the_gateway_was_killed(
-    open_page: OpenPage, room: ClassRoom, folder: Path, console: Any
+    open_page: OpenPage, room: ClassRoom, folder: Path, ending: ExitStack, console: Any
 ) -> None:
     """When a killed gateway is back, a student's page sends it what was typed meanwhile."""
     console.expect_a_break()
@@ -166,6 +173,7 @@ def test_goes_on_after_the_gateway_was_killed(
     page.type("21")
     page.sees(".bar .name small", "not kept yet")
     again = ClassRoom(folder, room.listen)
+    ending.callback(again.close)
     room.process = again.process
     expect(page.find(".bar .name small")).to_have_text("everything is kept")
     page.until(TOLD)
