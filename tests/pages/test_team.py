@@ -10,14 +10,19 @@ from typing import Any
 
 import pytest
 from contestant import Contestant, Sit
+from court_stub import TOKENS, CourtStub
 from lacoc_process import contest_run, run_lacoc
 from playwright.sync_api import Error, expect
 from ports import free_port
 from show import violations
+from venue import Venue
 from waiting import LIMIT_S
 
 from lacoc_server.contest.acts.organiser import enter
+from lacoc_shared import seal
+from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.seat import Phase
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 
@@ -145,3 +150,25 @@ def play_a_match(player: Contestant) -> str:
     teams = " ".join(player.find(".score-bug .team").all_inner_texts())
     player.sees(".result h1")
     return next(name for name in TEAMS if name != PERSON and name in teams)
+
+
+def test_a_team_that_plays_no_more_reads_why_and_is_not_alarmed(
+    venue: Venue, sit: Sit, console: Any
+) -> None:
+    """The card says what was decided; a court that is away then is no trouble of the team's."""
+    console.expect_a_break()
+    what = say("decided.no-show", match="Final", team="Bees")
+    there = Whereabouts(
+        team="Ants",
+        state="out",
+        said=say("team.out", place=None),
+        news=say("team.news", what=what, reason="not seen since noon"),
+    )
+    with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
+        court.teams.tell({seal.hash_token(TOKENS["left"], bytes(16)): there})
+        venue.web()
+        player = sit(venue.url)
+        player.open(token=TOKENS["left"])
+        player.sees(".entrance .coming", "Final: Bees did not come. Reason: not seen since noon")
+        player.misses(".banner")
+    player.sees(".banner.calm", "Its court does not answer now.")

@@ -186,10 +186,10 @@ class TeamWay:
         self._say(error.phrase if isinstance(error, NotNow) else say("team.court-away"))
 
     def _tell_news(self) -> None:
-        news, before = self._newest.news, self._news
-        self._news = news
-        if news is not None and news != before:
+        news = self._newest.news
+        if news is not None and news != self._news:
             self._tell(news)
+        self._news = news
 
     def _say(self, what: Phrase) -> None:
         if what != self._said:
