@@ -20,7 +20,7 @@ SLOW_SCREEN = """(() => {
   const next = window.requestAnimationFrame.bind(window);
   const cancelled = new Set();
   window.requestAnimationFrame = (draw) => {
-    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 180);
+    const id = setTimeout(() => next((ms) => cancelled.delete(id) || draw(ms)), 450);
     return id;
   };
   window.cancelAnimationFrame = (id) => {
@@ -28,7 +28,7 @@ SLOW_SCREEN = """(() => {
     cancelled.add(id);
   };
 })()"""
-"""Limits pages to about five pictures a second: drawing sixty would be most of a test's work."""
+"""Limits pages to about two pictures a second: drawing sixty would be most of a test's work."""
 
 OpenPage = Callable[..., Page]
 """A function that opens a page in its own browser context, with `Browser.new_context` options."""

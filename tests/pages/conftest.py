@@ -88,7 +88,7 @@ def console() -> Iterator[Console]:
 
 @pytest.fixture
 def slow_screen() -> bool:
-    """Give True, which limits pages to about five pictures a second.
+    """Give True, which limits pages to about two pictures a second.
 
     Tests of the drawing override this fixture with False.
     """

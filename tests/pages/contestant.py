@@ -12,7 +12,7 @@ from waiting import LIMIT_S
 
 from lacoc_shared.seat import Phase
 
-TOASTS = """
+PASSING = """
 window.__toasts = [];
 new MutationObserver((changes) => {
   for (const { addedNodes } of changes)
@@ -22,11 +22,30 @@ new MutationObserver((changes) => {
           ...(node.matches(".toast") ? [node] : node.querySelectorAll(".toast")),
         );
 }).observe(document, { childList: true, subtree: true });
+window.__shown = { next: [], phase: [] };
+new MutationObserver(() => {
+  const next = document.querySelector(".next");
+  const phase = document.querySelector(".score-bug .phase");
+  for (const [name, element, value] of [
+    ["next", next, next?.textContent],
+    ["phase", phase, phase?.dataset.phase],
+  ])
+    if (element?.checkVisibility() && window.__shown[name].at(-1) !== value)
+      window.__shown[name].push(value);
+}).observe(document, {
+  attributes: true, characterData: true, childList: true, subtree: true,
+});
 """
-"""Keeps all toasts of a page: a busy test may look when one has gone again."""
+"""Keeps what a page shows for a moment: a busy test may look when it has gone again."""
 _TOASTED = """(text) => {
   const at = window.__toasts.findIndex((toast) => toast.textContent.includes(text));
   return at >= 0 && Boolean(window.__toasts.splice(0, at + 1));
+}"""
+_SHOWN = """([name, value]) => {
+  const all = window.__shown[name];
+  // The first was waited for before: it counts while the page still shows it.
+  const at = all.findIndex((one, at) => one.includes(value) && (at > 0 || all.length === 1));
+  return at >= 0 && Boolean(all.splice(0, at));
 }"""
 
 
@@ -43,7 +62,7 @@ class Contestant:
         settings: dict[str, Any] = {"viewport": {"width": 1000, "height": 700}}
         self.url = url
         self.page: Page = open_page(**settings | options)
-        self.page.add_init_script(TOASTS)
+        self.page.add_init_script(PASSING)
 
     def open(
         self, path: str = "/play", key: str | None = None, query: str = "", token: str = ""
@@ -71,8 +90,8 @@ class Contestant:
         expect(self.find(selector)).to_have_count(0)
 
     def is_told(self, text: str) -> None:
-        """Wait until the line that says what to do next contains the text."""
-        self.sees(".next", text)
+        """Wait until the line about the next step has a text, or has had it since the last."""
+        self._has_shown("next", text)
 
     def is_toasted(self, text: str) -> None:
         """Wait for a toast (a short note) with the text, later than those waited for before."""
@@ -83,7 +102,8 @@ class Contestant:
         self.sees(f"main[data-standing={how}]")
 
     def phase(self, phase: Phase) -> None:
-        self.sees(f'.score-bug .phase[data-phase="{int(phase)}"]')
+        """Wait until the page shows a phase, or has shown it since the last one waited for."""
+        self._has_shown("phase", str(int(phase)))
 
     def join(self, token: str, name: str = "Ants") -> None:
         """Type the token if the page asks for it; fill in the name and sit down."""
@@ -94,6 +114,9 @@ class Contestant:
         self.sees(".own-seat")
         self.page.fill("#join-name", name)
         self.page.click("button[type=submit]")
+
+    def _has_shown(self, name: str, value: str) -> None:
+        self.page.wait_for_function(_SHOWN, arg=[name, value])
 
     def press(self, *keys: str) -> None:
         for key in keys:

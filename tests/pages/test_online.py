@@ -69,7 +69,7 @@ listen = ["127.0.0.1:{free_port()}"]
 [stage.final]
 format = "round-robin"
 arena = "othello"
-settings.match.duration_s = 4.0
+settings.match.duration_s = 6.0
 settings.match.countdown_s = 0.5
 """)
     for team in TEAMS:
@@ -137,9 +137,9 @@ def test_a_contest_at_a_public_address(
         referee.locator(".enter button[type=submit]").click()
         expect(referee.locator(".acting.mine")).to_be_visible()
         step(referee)
+        shows[0].moves()
         for player in players:
             player.phase(Phase.PLAYING)
-        shows[0].moves()
         expect(referee.locator("main.referee")).to_have_attribute(
             "data-phase", str(int(Phase.FINISHED))
         )
