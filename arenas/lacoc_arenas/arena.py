@@ -143,7 +143,10 @@ class Arena:
         self.seats = file.seat
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Let another process import the folder's code before it reads what is made of it."""
+        """Let another process import the code of the arena's folder before it unpickles any of it.
+
+        An `Arena` is pickled as the call that makes it again.
+        """
         return from_settings, (self.name, self.settings, self.folder)
 
     def _make(self, settings: dict[str, Any]) -> AnyGame:

@@ -195,7 +195,7 @@ class _Call:
             when_stuck(self._said(self.why))
 
     def _said(self, why: Phrase) -> Phrase:
-        """Return the message, with the line of the bot's file where its thread is."""
+        """Return the message about a bot that does not answer, with the line that it is at."""
         frame, bot = sys._current_frames().get(self._thread), self._timer.bot
         while frame is not None and frame.f_code.co_filename != bot:
             frame = frame.f_back

@@ -1,4 +1,4 @@
-"""Bots for Flag-Strike: `straight`, `nearest` (to the nearest flag) and `planner`."""
+"""Bots for Flag-Strike: `straight`, `nearest` (to the nearest flag) and `planner` (of routes)."""
 
 import math
 from abc import ABC, abstractmethod

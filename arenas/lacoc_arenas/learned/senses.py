@@ -135,10 +135,10 @@ class Senses:
 
 
 def partners(markers: Sequence[MarkerInfo]) -> tuple[int, ...] | None:
-    """Return each marker's partner: it is in the marker's place if the field turns by 180 degrees.
+    """Return each marker's partner: the marker whose place it takes when the field is turned.
 
-    Partners have the same kind and the same points. None if a marker has no partner: then the field
-    is not symmetric.
+    The turn is by 180 degrees. Partners have the same kind and the same points. The result is None
+    if a marker has no partner: then the field is not symmetric.
     """
     places = {_place(m, 1): index for index, m in enumerate(markers)}
     found = [places.get(_place(m, -1)) for m in markers]

@@ -1,4 +1,4 @@
-"""Bots for Robot-Othello: `straight`, `nearest` (to the nearest disc) and `planner`."""
+"""Bots for Robot-Othello: `straight`, `nearest` (to the nearest disc) and `planner` (of routes)."""
 
 import math
 from abc import ABC, abstractmethod

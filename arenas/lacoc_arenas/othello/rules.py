@@ -243,7 +243,7 @@ class Othello:
         return leader(scores)
 
     def gains(self, state: State, seat: int) -> Gains:
-        """Return the discs that flip if the robot walks onto them from its last cell."""
+        """Return the discs beside the robot's last cell that would score if it walked onto them."""
         last = state.last[seat]
         if last == NO_CELL:
             return Gains()
