@@ -221,7 +221,7 @@ def graphics() -> Finding:
 
 
 def clock(seconds: float) -> Finding:
-    """Measure how punctually this machine wakes a program 50 times a second, as a court needs."""
+    """Measure how late this machine wakes a program that runs 50 times a second, as courts do."""
     with ThreadPoolExecutor(1) as thread:  # its priority is that of a court's beats
         went_first = thread.submit(go_first).result()
         late_s = thread.submit(_late_s, max(1, round(seconds / BEAT_S))).result()

@@ -27,7 +27,7 @@ class Mixer:
         self._mixed[begin : begin + len(sound)] += sound
 
     def take(self, until: int) -> bytes:
-        """Return what was not taken yet, up to a sample, as `add` takes it."""
+        """Return the samples up to number `until` that were not taken yet, in the form of `add`."""
         count = max(0, until - self._taken)
         self._reach(count)
         found, self._mixed = self._mixed[:count], self._mixed[count:]

@@ -26,7 +26,7 @@ _NO_UTF_8 = re.compile(
 
 
 class NotEditable(Exception):
-    """The sheet can't be changed in place without losing something."""
+    """A part of the workbook can't be changed without the loss of something."""
 
 
 @dataclass
