@@ -29,7 +29,7 @@ app = typer.Typer(
 )
 
 _LARGEST_C_FILE = 256 * 1024
-"""Largest C file [bytes]."""
+"""Largest C file that is read [bytes]."""
 
 _Robot = Annotated[
     str,
@@ -184,7 +184,7 @@ def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
 
 
 def _gait_beside(robot: str, spec: RobotSpec, notes: list[Phrase]) -> Gait:
-    """Read the gait files beside a robot's file; leave out and note those with mistakes."""
+    """Read the gait files beside a robot's file; leave out files with mistakes, and note this."""
     tables: list[PostureTable | LocomotionTable] = []
     for file in sample_gait_files(robot):
         if file is None:

@@ -1,8 +1,8 @@
 """Zenoh's configuration for courts and for everyone else, with a reason for each entry.
 
 Some of Zenoh's defaults are dangerous for a public court: shared memory fails at 351 clients,
-messages may have any size, a send may block, and peers bypass the access rules. Only this
-module changes them.
+messages may have any size, a send may block, and peers bypass the access rules. Only this module
+sets them.
 """
 
 import base64
@@ -41,7 +41,8 @@ _HEADERS_BYTES = 2048
 # Clients receive scenes and trials, which are larger than what a court receives.
 _CLIENT_MAX_BYTES = TRIAL_REPLY_MAX_BYTES + _HEADERS_BYTES
 _ASKED_MAX_BYTES = 1 << 20
-"""Largest request that reaches a studio: much more than it reads, so that it can say so."""
+"""Largest request that reaches a studio [bytes]. It is much larger than a studio reads, so that the
+studio can answer that a request is too large."""
 _LEASE_MS = 3000
 
 
@@ -54,7 +55,8 @@ def court_config(
 
     Args:
         listen: complete addresses.
-        certificate: what proves the court's name; None: nothing is encrypted.
+        certificate: the certificate with which the court proves its name; None: nothing is
+            encrypted.
         office: whether an office may assign matches; its requests are larger than all others.
     """
     largest = ASSIGN_MAX_BYTES if office else JOIN_MAX_BYTES
@@ -94,7 +96,7 @@ def studio_config(listen: Sequence[str]) -> Config:
 
 
 def desk_config(listen: Sequence[str]) -> Config:
-    """Make the configuration of an office's desk: a studio's, but with the access rules of a desk.
+    """Make the configuration of an office's desk: a studio's, with the access rules of a desk.
 
     Args:
         listen: complete addresses.

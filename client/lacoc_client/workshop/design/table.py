@@ -38,7 +38,7 @@ class FileTable(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def file_name(self) -> str:
-        """The usual name of a text file with such a table, such as "Loco-data.txt" (rules 2)."""
+        """The usual name of a text file of this kind of table, as "Loco-data.txt" (rules 2)."""
         return GAIT_NAMES[Level.POSTURE if self.kind == "postures" else Level.LOCOMOTION]
 
 

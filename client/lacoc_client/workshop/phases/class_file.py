@@ -196,7 +196,7 @@ def set_aside(path: Path) -> Path:
 
 
 def forget(path: Path) -> list[Path]:
-    """Delete the file of a class, its damaged files, and what SQLite keeps beside them.
+    """Delete the file of a class, its damaged files that were set aside, and SQLite's own files.
 
     Returns:
         The deleted files.
