@@ -121,7 +121,7 @@ class UserError(Exception):
         return only if isinstance(only, Phrase) else say("plain.text", text=only)
 
     def each(self, put: Callable[[Phrase | str], Phrase]) -> "UserError":
-        """Return an error with each sentence put into another one, such as one with its place."""
+        """Return an error with each sentence put into another one, which may add a place."""
         return UserError(*map(put, self.said))
 
     def __str__(self) -> str:

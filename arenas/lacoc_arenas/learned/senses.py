@@ -57,7 +57,7 @@ class Senses:
         turned = partners(sheet.markers) if self._seats == 2 else None
         self._turned = turned
         self.names = tuple(self._names(sheet))
-        """What each number is; the seats are "own" and "other"."""
+        """Name of each number; in the names the seats are "own" and "other"."""
         self.size = len(self.names)
         angles = [f"{_FLOAT.itemsize * joints}s" for joints in self._joints]
         self._unpack = Struct("<" + "".join(f"{_POSE}f{size}" for size in angles)).unpack

@@ -110,8 +110,8 @@ def client_config(connect: Sequence[str], timeout_s: float, authority: str = "")
     Args:
         connect: complete addresses; the first that answers is used.
         timeout_s: time limit of the first connection; later ones are tried forever.
-        authority: certificate (PEM) of a private authority, which is trusted besides the public
-            ones.
+        authority: certificate (PEM) of a private authority, which is trusted in addition to the
+            public ones.
     """
     return {
         **_common("client"),
@@ -146,9 +146,9 @@ def _court_tls(certificate: Pair | None) -> Config:
 
 
 def _checked(endpoint: str) -> str:
-    """Return an endpoint with which Zenoh checks the name of a court, unless it is at this machine.
+    """Return an endpoint that makes Zenoh check the court's name, unless it is this machine.
 
-    What is sent there leaves no machine, and a public certificate names no 127.0.0.1.
+    A message to this machine leaves no machine, and no public certificate is for 127.0.0.1.
     """
     here = endpoint.startswith("tls/") and address.is_own(address.host(endpoint))
     return f"{endpoint}#verify_name_on_connect=false" if here else endpoint

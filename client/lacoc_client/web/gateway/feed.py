@@ -30,7 +30,7 @@ _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
 _TRIP_S = 1.0
 _JOINED_S = 3.0
-"""Longest wait for a court that is not connected yet [s]."""
+"""Longest wait of `joined` for a court that is not connected yet [s]."""
 """Time between two measurements of the way to the court, however many pages want to know."""
 
 

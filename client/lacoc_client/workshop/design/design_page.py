@@ -47,7 +47,7 @@ class DesignPage:
         self._answers = Answers(self._viewer, lambda *_: None)
         self._studio = StudioDesk(host.studios, self._viewer.send_if_fast)
         self._learner: Learner | None = None
-        """None: the page was not let in yet."""
+        """Turns what the page does into evidence; None: the page was not let in yet."""
         self._comparing: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
