@@ -178,7 +178,7 @@ class CheckedGame:
     def gains(self, state: Any, seat: int) -> Gains:
         """Return what a robot would gain next (`Game.gains`), checked.
 
-        Nothing if the game has no `gains`.
+        If the game has no `gains`, return that it gains nothing.
         """
         rule = getattr(self._game, "gains", None)
         if rule is None:

@@ -211,7 +211,7 @@ class FlagStrike:
     def over(self, state: State) -> Phrase | None:
         """Return why the match is over: one team has all corners (workshop 5-2 rule 4).
 
-        Else None.
+        None if it is not over.
         """
         holder = self._holder(state)
         return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])

@@ -232,7 +232,10 @@ class Othello:
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
     def over(self, state: State) -> Phrase | None:
-        """Return why the match is over: a team has no disc left (rules 5); else None."""
+        """Return why the match is over: a team has no disc left (rules 5).
+
+        None if it is not over.
+        """
         for colour, seat in ((LEFT, "left"), (RIGHT, "right")):
             if colour not in state.cells:
                 return say("over.no-disc", seat=seat)

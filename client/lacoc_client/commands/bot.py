@@ -157,9 +157,9 @@ def _play_match(
     arena: str | None,
     stopping: Callable[[], bool],
 ) -> bool:
-    """Play one match of a team.
+    """Play one match of a team; return whether it is over.
 
-    Return False if the seat was refused, the court is gone or the bot is to stop.
+    False: the seat was refused, the court is gone, or the bot is asked to stop.
     """
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:

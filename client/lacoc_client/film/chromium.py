@@ -39,7 +39,7 @@ _WINDOWS = ("Google/Chrome/Application/chrome.exe", "Chromium/Application/chrome
 
 
 def on_path() -> str | None:
-    """Return the path of the system's Chromium or Chrome; None if there is none."""
+    """Return the path of the system's Chromium or Chrome; None if neither is installed."""
     found = (shutil.which(name) for name in (*_NAMES, *map(str, _places())))
     return next((path for path in found if path), None)
 

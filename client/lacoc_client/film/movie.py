@@ -104,7 +104,7 @@ class Movie:
         self._sound_on()
 
     def end(self) -> None:
-        """Write what is left in the encoders."""
+        """Write the pictures and sounds that are still in the encoders."""
         self._container.mux(self._stream.encode(None))
         if self._track is not None:
             self._container.mux(self._track.encode(None))

@@ -206,16 +206,16 @@ class Spectator:
         self._new_events.sort(key=lambda event: (event.match, event.number))
 
     def _take_answers(self) -> None:
-        """Take in the answers to requests."""
+        """Read the answers to requests that have come."""
         if (events := self._lacking_events.take()) is not None:
             self._read_events(events)
         if (sheet := self._lacking_sheet.take()) is not None:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events; while a list of events is requested, leave them for later.
+        """Read new events; while a list of events is requested, leave them for later.
 
-        The list is older than the new events, so it must be taken in first.
+        The list is older than the new events, so it must be read first.
         """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
@@ -253,7 +253,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer when it has come, and only once; else None."""
+        """Return the answer when it has come, only once; None before and after this."""
         if self._question is None:
             return None
         try:

@@ -82,7 +82,7 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def given_name(self) -> str:
-        """The name that the organiser gave the contest; "" if none."""
+        """The name that the organiser gave to the contest; "": the organiser gave no name."""
         return "" if self.name == _NO_NAME else self.name
 
     @property

@@ -30,8 +30,8 @@ LEG_LABELS: dict[int, tuple[str, ...]] = {
     6: ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F"),
     8: ("R,F", "R,FC", "R,BC", "R,B", "L,B", "L,BC", "L,FC", "L,F"),
 }
-"""The usual labels of legs, by the number of legs: for robots that a gait file shows by its number
-of columns."""
+"""The usual labels of a robot's legs, by their number. A gait file shows the number of legs by its
+number of columns."""
 
 # Maps full-width forms (typed with a Japanese input method) to ASCII, the ideographic space and
 # no-break spaces (copied from web pages) to a space, the minus sign U+2212 to a hyphen. U+FF0D

@@ -70,7 +70,7 @@ class CourtView(Generic[T]):
 
     @property
     def lacks_scene(self) -> bool:
-        """True if the scene here is not the newest frame's scene."""
+        """True if the scene here is not that of the newest frame."""
         return self._frame_scene != self._scene_hash
 
     @property

@@ -43,7 +43,7 @@ def segment_paths(folder: Path, match_id: str) -> list[Path]:
 
 
 def record_paths(path: Path) -> list[Path]:
-    """Return all files of the record that a path belongs to.
+    """Return the paths of all files of a record.
 
     Args:
         path: a packed file, or any one of the segments of a match.

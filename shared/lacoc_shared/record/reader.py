@@ -52,7 +52,7 @@ class Record:
     """The newest verdict about how well the match ran; None: there is none yet, or the match was
     not played in real time."""
     last_beat: int = -1
-    """The last beat with any message; -1: none."""
+    """The last beat with any message; -1: there is no message."""
     cut: Phrase | None = None
     """Why reading stopped too early, and at which place; None: the record is complete."""
     flaw: Phrase | None = None

@@ -23,7 +23,7 @@ _EMPTY_MOST_S = 20.0
 """If the court on air has had no play for this long, even the last cut of the minute is used to
 show a court with play [s]."""
 _KNOWN_S = 180.0
-"""What moments and cuts are worth is computed from the moments of this last time [s]."""
+"""Moments and cuts are valued by comparison with the moments of this last time [s]."""
 
 Why = Moving | Literal["first", "played", "gone"]
 """Why a court is on air: the kind of a moment, or

@@ -72,7 +72,7 @@ class Audience:
             viewer.send_if_fast(framed)
 
     def send_own(self, framed: bytes) -> None:
-        """Send a message that must arrive, to the pages of whoever started the gateway."""
+        """Send a message that must arrive to all pages of the person who started the gateway."""
         for viewer in self._viewers:
             if viewer.is_own:
                 viewer.send(framed)

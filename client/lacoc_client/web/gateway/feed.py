@@ -361,7 +361,7 @@ class CourtFeed:
                 return  # the next frame or health asks again
 
     async def _fetch_log(self) -> None:
-        """Fetch the list of events, then take in those that came meanwhile: the list lacks them."""
+        """Fetch the list of events, then add events that came meanwhile: the list lacks them."""
         self._logs_asked += 1
         try:
             self._take_log(await self._ask(self._keys.event))

@@ -22,7 +22,7 @@ class LateFeed:
     """Passes on what a court's feed sends, each message later by a fixed time.
 
     Args:
-        feed: the court.
+        feed: the feed of the court.
         behind_s: how much later messages are passed on [s].
     """
 

@@ -57,7 +57,7 @@ class PageSocket(WebSocketsSansIOProtocol):
             self.scope["state"]["socket"] = self
 
     def data_received(self, data: bytes) -> None:
-        """Take in bytes; see `asyncio.Protocol`."""
+        """Receive bytes from the page; see `asyncio.Protocol`."""
         self.heard_s = self.loop.time()
         super().data_received(data)
 
@@ -121,7 +121,7 @@ class PageRequests(H11Protocol):
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take in bytes; see `asyncio.Protocol`."""
+        """Receive bytes from the browser; see `asyncio.Protocol`."""
         super().data_received(data)
         own = self.transport.get_protocol() is self  # else it is a WebSocket's connection now
         if own and self.conn.their_state in (h11.IDLE, h11.SEND_BODY):

@@ -106,7 +106,10 @@ class CourtPicture:
         return FramePart(frame.match, phase, frame.clock_ticks, scores)
 
     def played(self) -> SheetPart | None:
-        """Read what is played; None if the newest frame's match has no sheet yet, or a bad one."""
+        """Read what is played.
+
+        None if the newest frame's match has no sheet yet, or an unreadable one.
+        """
         sheet, frame = self.view.sheet, self._newest
         if sheet is None or frame is None:
             return None

@@ -198,7 +198,7 @@ class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
 
 
 class OutlookAsk(Ask, frozen=True, kw_only=True, tag="outlook"):
-    """Ask as a referee what would happen if play went on."""
+    """Ask, as a referee, what would happen if play went on."""
 
     decision: Decision | None = None
     """A decision that would be made before play goes on; None: no decision."""

@@ -32,8 +32,8 @@ class HandIns:
 
         Args:
             machine: address of the machine that sent it.
-            request: an encoded request; one that can't be decoded is not counted, and the desk
-                refuses it.
+            request: an encoded request; one that can't be decoded is not counted: it is left to the
+                desk.
             now_s: time on a clock that never goes back [s].
 
         Raises:

@@ -84,8 +84,8 @@ def card(
     """Make a student's card.
 
     Args:
-        seen: what is known besides evidence.
-        evidence: all that the student did, in order.
+        seen: the facts about the student besides the evidence.
+        evidence: all evidence of the student, in order.
         progress: how far the student is.
         now_s: time in seconds since 1970 (UTC).
     """

@@ -173,7 +173,7 @@ class Folder:
             return None
 
     def _data(self, path: Path) -> bytes | None:
-        """Read a file; return None if there is none."""
+        """Read a file; return None if it does not exist."""
         try:
             with path.open("rb") as file:
                 return file.read(MAX_BYTES + 1)

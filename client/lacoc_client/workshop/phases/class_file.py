@@ -158,7 +158,7 @@ class ClassFile:
         self._db.close()
 
     def problem(self, error: sqlite3.Error) -> Damaged | UserError:
-        """Return the exception, with a sentence for people, for an error of SQLite."""
+        """Turn an error of SQLite into the exception to raise, which has a sentence for people."""
         return database.problem(self._path, error)
 
     def _write_documents(self, documents: Iterable[Document]) -> None:

@@ -36,7 +36,7 @@ _MAX_FORMULAS = 250_000  # characters of all cells' formulas; our own mirror she
 _MAX_TEXT = 200  # characters of a cell; a message shows fewer, and no angle has so many
 _MAX_ROWS, _MAX_COLUMNS = 1000, 100  # the rest is not read; a table has 14 rows, 25 columns
 _STRICT = re.compile(rb"http://purl\.oclc\.org/ooxml/(\w+)/")
-"""Namespaces of the kind "Strict Open XML" (ISO 29500); openpyxl knows those before ISO only."""
+"""Namespaces of the kind "Strict Open XML" (ISO 29500); openpyxl can only read the older ones."""
 _OTHERS = {
     "content.xml": say("gait.opendocument"),
     "word/document.xml": say("gait.word-document"),

@@ -1,4 +1,4 @@
-"""Keeps the evidence of what one student does, and reads the student's documents."""
+"""Keeps the evidence and the documents of one student."""
 
 import asyncio
 import time
@@ -55,7 +55,7 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
     phase: int
     """Number of the student's present phase, from 0 to 6."""
     word: str
-    """The word that the student chose for how the robot should walk; "": none yet."""
+    """The word that the student chose for how the robot should walk; "": no word yet."""
     hand_up: bool
     """Whether the student asks for help now."""
     trouble: Phrase | None

@@ -118,7 +118,7 @@ def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask what the margin of the trial is, or which feet carried the robot."""
+    """Ask what the support margin of the trial means, or which feet carried the robot."""
     facts = _last_trial(seen).facts
     seed = len(seen)
     if turn % 2 == 0 and facts.margin_mm is not None:
