@@ -354,7 +354,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     court: str
     match: int
     match_id: str = ""
-    """Id of the match; its record and its log use it as their name."""
+    """Id of the match. Its record is named by it, and logs name the match by it."""
     arena: str
     title: str
     duration_s: float

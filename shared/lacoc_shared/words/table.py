@@ -31,8 +31,7 @@ FILES = (
     "environments",
 )
 ON_PAGES = FILES[:-3]
-"""The files with sentences for pages; the last three files have only sentences for terminals and
-programs."""
+"""All files but the last three, which have only sentences for terminals and programs."""
 
 
 class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
