@@ -1,7 +1,7 @@
 """An arena: a folder with its TOML, rules, field and bots, ready to be played.
 
-The TOML has `title`, a table [match] that every game shares, one [[seat]] for each
-seat, and a table [game] for this game alone. The contest file may override any
+The TOML has `title`, a table [match] with the settings that every game has, one [[seat]] for each
+seat, and a table [game] with the settings of this game alone. The contest file may override any
 entry (docs/write-an-arena.md).
 """
 
@@ -39,9 +39,9 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     duration_s: Seconds = 180.0
     """Workshop 5-1 rule 2, 5-2 rule 1; 0: no time limit."""
     countdown_s: Seconds = 3.0
-    """Counted down before every start and every resume."""
+    """How long the countdown before every start and every resume is."""
     restart_freeze_s: Seconds = 5.0
-    """[x] and digits are refused for this long after [x]."""
+    """For this long after a restart ([x]) a robot's keys are refused: another [x], and digits."""
     levels: Annotated[tuple[Literal["A", "B"], ...], msgspec.Meta(min_length=1)] = ("B",)
     """Levels of control that are open; a seat begins with the first one."""
     repeat: bool = True
@@ -49,15 +49,16 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     start: Literal["referee", "ready"] = "referee"
     """Who starts the match: the referee, or every seat by saying ready."""
     unattended_s: Seconds = 900.0
-    """A match that starts by "ready" ends when no seat has been heard for this long; 0: never."""
+    """A match that starts by "ready" ends when no seat has been heard for this long; 0: it never
+    ends for this reason."""
 
     lead_volatility: Annotated[float, msgspec.Meta(ge=0.0)] = 0.0
-    """Standard deviation of the change of a lead in a second of play [points]. Pages tell chances
-    to win from it, and the match does not use it; 0: they tell none."""
+    """Standard deviation of the change of the lead in one second of play [points]. Pages compute
+    the chances to win from it; the match does not use it. 0: pages show no chances."""
 
     @property
     def open_levels(self) -> tuple[Level, ...]:
-        """`levels` as `Level` values."""
+        """Return the names in `levels` as `Level` values."""
         return tuple(Level("AB".index(level)) for level in self.levels)
 
 
@@ -77,11 +78,11 @@ class _ArenaFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class _WrongEntry(UserError):
-    """An entry of the file, or of what replaces it, is wrong.
+    """An entry of the arena file, or an override of an entry, is wrong.
 
     Args:
         name: name of the arena.
-        where: place of the entry, such as "match.duration_s", or "".
+        where: place of the entry, such as "match.duration_s"; "" if it is not one entry.
         error: what is wrong with it.
         known: the entries that could be there; None if they are not known.
     """
@@ -98,7 +99,7 @@ class _WrongEntry(UserError):
         self.replaced = say(
             "arena.wrong-settings", name=name, where=where or None, error=error, known=known
         )
-        """The sentence if the entry is not from the file, but replaces one of the file."""
+        """The sentence for the case that the wrong entry is an override, and not from the file."""
 
 
 class Arena:
@@ -142,11 +143,17 @@ class Arena:
         self.seats = file.seat
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Let another process import the folder's code before it reads what is made of it."""
+        """Let another process import the code of the arena's folder before it unpickles any of it.
+
+        An `Arena` is pickled as the call that makes it again.
+        """
         return from_settings, (self.name, self.settings, self.folder)
 
     def _make(self, settings: dict[str, Any]) -> AnyGame:
-        """Make the game from its settings; see `checked`."""
+        """Make the game from its settings.
+
+        Check it (`checked`) if the arena is no part of LACOC.
+        """
         game = self._source.call("make", self._part("rules", "make"), settings, refuses=True)
         ours = self._module.startswith(f"{__package__}.")
         return game if ours else checked(self._source, game)
@@ -292,7 +299,14 @@ def _require_whole(module: ModuleType) -> None:
 
 
 def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
-    """Return the entries that a table of the file can have, if one in it is unknown."""
+    """Return the names that are possible in a table of the arena file.
+
+    None if the mistake is not an unknown name.
+
+    Args:
+        where: place of the table.
+        wrong: the mistake in it.
+    """
     if isinstance(wrong, str) or wrong.code != "value.no-entry":
         return None
     kind = {"": _ArenaFile, "match": MatchSettings}.get(where, SeatSettings)
@@ -300,7 +314,10 @@ def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
 
 
 def merge(settings: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
-    """Replace entries of nested tables; a list or a single value is replaced as a whole."""
+    """Return settings in which overrides replace entries, in nested tables too.
+
+    A list or a single value is replaced as a whole.
+    """
     merged = dict(settings)
     for key, value in overrides.items():
         old = merged.get(key)

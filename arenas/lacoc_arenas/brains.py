@@ -21,7 +21,8 @@ from lacoc_shared.words import say
 GROUP = "lacoc.bots"
 GHOST = "ghost:"
 RECORDED = "-"
-"""In place of a bot's name, where a recorded match goes on: its recorded keys."""
+"""Stands in place of a bot's name where a recorded match goes on: the seat is steered by its
+recorded keys."""
 
 
 def find(arena: Arena, name: str) -> BotFactory:

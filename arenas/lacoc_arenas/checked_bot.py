@@ -51,10 +51,10 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
 
 
 def loaded(name: str, load: Callable[[], Any]) -> Any:
-    """Run the code of a bot's file, within the time for that.
+    """Run the code of a bot's file, within the time limit for loading it.
 
     Args:
-        name: the bot's name, as the user typed it; tracebacks name its file so.
+        name: the bot's name, as the user typed it; tracebacks call its file by this name.
         load: runs the code.
 
     Raises:
@@ -67,7 +67,7 @@ def loaded(name: str, load: Callable[[], Any]) -> Any:
 
 
 def broken(name: str, error: BaseException, file: str | None) -> UserError:
-    """Make the error for an exception of a bot; it names the line of the bot's file that failed.
+    """Make the error for an exception of a bot; its sentence names the failing line.
 
     Args:
         name: the bot's name, as the user typed it.
@@ -122,6 +122,6 @@ def _gave_back(name: str, function: object, found: object, expected: Phrase) -> 
 
 
 def _place(function: object) -> str | None:
-    """Return the file and line where a function begins; None for any other callable."""
+    """Return the file and line where a function begins; None if it is no Python function."""
     code = getattr(function, "__code__", None)
     return None if code is None else f"{code.co_filename}:{code.co_firstlineno}"

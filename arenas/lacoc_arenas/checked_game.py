@@ -28,7 +28,7 @@ class ArenaCode(NamedTuple):
     folder: str
 
     def wrong(self, what: Phrase) -> UserError:
-        """Make the error that says what is wrong with the arena's code."""
+        """Make the error that says what is wrong with the arena's code, and in which arena."""
         return UserError(say("arena.wrong-code", name=self.arena, error=what))
 
     def call(
@@ -40,7 +40,8 @@ class ArenaCode(NamedTuple):
             what: the function's name.
             function: the function.
             arguments: its arguments.
-            refuses: whether it may raise ValueError, for a setting or a state of a marker.
+            refuses: whether the function may raise ValueError, because a setting or a state of a
+                marker is wrong.
 
         Raises:
             UserError: if the function raises anything else; the error has the line of the arena's
@@ -175,7 +176,10 @@ class CheckedGame:
         return found
 
     def gains(self, state: Any, seat: int) -> Gains:
-        """Return what a robot would gain next (`Game.gains`), checked; a game may leave it out."""
+        """Return what a robot would gain next (`Game.gains`), checked.
+
+        If the game has no `gains`, return that it gains nothing.
+        """
         rule = getattr(self._game, "gains", None)
         if rule is None:
             return Gains()
@@ -217,7 +221,7 @@ class CheckedGame:
 
 
 def _check_values(source: ArenaCode, game: AnyGame) -> None:
-    """Check what a game has besides its rules.
+    """Check the values of a game that are not rules: markers, starts, size and the like.
 
     Raises:
         UserError: at the first value that is wrong.
@@ -258,7 +262,9 @@ def _check_values(source: ArenaCode, game: AnyGame) -> None:
 
 
 def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
-    """Return the indices of the marker and the state that a geom shows; (-1, -1) if none.
+    """Return the indices of the marker and of the state for which a geom is shown.
+
+    (-1, -1) if the geom does not belong to a marker.
 
     Raises:
         UserError: if the geom's name begins with "marker:", and there is no such marker or state.

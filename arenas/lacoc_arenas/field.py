@@ -1,9 +1,9 @@
 """MuJoCo geoms that the fields of all games are built of.
 
-Only the floor and the four wall planes can be touched. Every other geom is only visible: it has no
-mass and no contacts, so it does not change the physics at all (rules 6). The geoms of a marker are
-named "marker:NAME:STATE", followed by ":PART" if a state has several shapes; they are shown while
-the marker is in that state.
+Robots collide only with the floor and the four wall planes. Every other geom is only visible: it
+has no mass and no contacts, so it does not change the physics at all (rules 6). The geoms of a
+marker are named "marker:NAME:STATE", followed by ":PART" if a state has several shapes; they are
+shown while the marker is in that state.
 """
 
 import math
@@ -36,10 +36,10 @@ TINTS: dict[str, Rgba] = {
     "right": rgba("#e69f00"),
     "down": rgba("#a39c8f"),
 }
-"""The colour of a marker in each state, with the default colours of the teams."""
+"""The colour of a marker in each state, when the teams have their default colours."""
 
 _GROUND = {"contype": 1, "conaffinity": 0xFFFE}
-"""Collides with robots, whose own bits start at 2 (docs/facts.md 2)."""
+"""Collision bit of floor and walls; the robots' own bits start at 2 (docs/facts.md 2)."""
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 BOX = mujoco.mjtGeom.mjGEOM_BOX
@@ -49,7 +49,7 @@ _WALL_HEIGHT_M, _WALL_HALF_M = 0.05, 0.015
 
 
 def ground(spec: mujoco.MjSpec, size_m: tuple[float, float]) -> None:
-    """Add the floor and the walls around it.
+    """Add the floor and the four walls around it.
 
     Args:
         spec: the model to add to.

@@ -1,8 +1,8 @@
 """The interface of a game: pure rules over numbers (docs/architecture.md).
 
-A game is a value made from its settings. It never changes: the state of a match goes
-into `step` and comes out of it. It knows no physics, network or clock, so the same
-observations give the same match anywhere.
+A game is a value made from its settings. It never changes: the state of a match goes into `step`,
+and the new state comes out. A game uses no physics engine, network or clock, so the same
+observations give the same match on any machine.
 """
 
 from collections.abc import Set as AbstractSet
@@ -14,12 +14,12 @@ from lacoc_shared.messages import Gains, MarkerInfo
 from lacoc_shared.words import Phrase, render, say
 
 NEUTRAL, LEFT, RIGHT, DOWN = range(4)
-"""States of a marker, in the order of `MARKER_STATES`. A marker that a seat owns has the seat's
-index + 1 as its state.
-"""
+"""States of a marker, in the order of `MARKER_STATES`. A marker that a seat has claimed has the
+seat's index + 1 as its state."""
 
 Claim = tuple[int, str]
-"""(seat, marker): an event gives the marker to the seat. A referee may strike it (rules 4.1)."""
+"""(seat, marker): an event gives the marker to the seat. A referee may strike the claim out (rules
+4.1)."""
 
 
 class NoSuchState(ValueError):
@@ -65,11 +65,11 @@ class RobotView(NamedTuple):
     """The data of one robot that the rules see after a tick, in the world frame."""
 
     x_m: float
-    """Origin of the body frame [m]."""
+    """Origin of the body frame (x, y, z) [m]."""
     y_m: float
     z_m: float
     qw: float
-    """Orientation of the body as a quaternion."""
+    """Orientation of the body as a quaternion (w, x, y, z)."""
     qx: float
     qy: float
     qz: float
@@ -80,24 +80,24 @@ class RobotView(NamedTuple):
 
 
 Observation = tuple[RobotView, ...]
-"""One view for each seat."""
+"""What the rules see after a tick: one `RobotView` for each seat."""
 
 
 class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
     """Something that the rules decided in a tick."""
 
     kind: str
-    """The game's own word: flip, capture, strike."""
+    """The game's own word for what happened, such as flip, capture or strike."""
     seat: int
     marker: str
     """The marker that was claimed; with `seat` it names the claim."""
     also: tuple[str, ...] = ()
-    """Further markers that changed with the claimed one, such as the runs of rules 5."""
+    """Further markers that changed together with the claimed one, such as the runs of rules 5."""
     points: int = 0
     """Points that the seat gains."""
     said: Phrase
-    """What happened, as a whole sentence. Its value `team` is ""; the match fills it in. A game
-    that is not part of LACOC uses `event.other`."""
+    """What happened, as a whole sentence. The game leaves its value `team` as ""; the match fills
+    it in. A game that is not part of LACOC uses `event.other`."""
 
 
 S = TypeVar("S", bound=msgspec.Struct)
@@ -108,7 +108,7 @@ class Game(Protocol[S]):
 
     rule: Phrase | None
     """What the game is about and how one scores, in a sentence for players and spectators
-    (`rule.*`); None: no page says it."""
+    (`rule.*`); None: pages show no such sentence."""
     state_type: type[S]
     """The struct that holds the state of a match; msgpack must be able to encode it."""
     markers: tuple[MarkerInfo, ...]
@@ -162,7 +162,7 @@ class Game(Protocol[S]):
         """
 
     def gains(self, state: S, seat: int) -> Gains:
-        """Say what a robot would gain next, for its player's page; it judges nothing.
+        """Return what a robot would gain next, for its player's page; no rule uses the answer.
 
         Args:
             state: the present state.

@@ -1,4 +1,4 @@
-"""Lengths and symmetry, shared by the fields of all games."""
+"""Types of lengths, and the symmetry of a field, for the fields of all games."""
 
 import math
 from collections.abc import Iterable
@@ -18,12 +18,12 @@ Point = tuple[
 
 
 def turned(place: Place) -> Place:
-    """Return the place that this one becomes when the field is turned by 180 degrees (rules 4)."""
+    """Return where a place comes to lie when the field is turned by 180 degrees (rules 4)."""
     heading_rad = math.remainder(place.heading_rad + math.pi, math.tau)
     return Place(0.0 - place.x_m, 0.0 - place.y_m, heading_rad)
 
 
 def opposite(places: Iterable[Place]) -> tuple[tuple[Place, ...], tuple[Place, ...]]:
-    """Return the start places of the left seat and, turned by 180 degrees, of the right seat."""
+    """Return the start places of both seats: the left seat's, and these turned by 180 degrees."""
     left = tuple(places)
     return left, tuple(map(turned, left))

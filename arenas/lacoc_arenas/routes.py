@@ -1,4 +1,4 @@
-"""Routes of a bot over several markers, and the search for a good one. Pure."""
+"""Routes of a bot over several markers, and the search for a good route. Pure."""
 
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
@@ -10,25 +10,26 @@ class Route(NamedTuple):
     """Markers that a robot visits one after another, as planned."""
 
     worth: float = 0.0
-    """What it gains; later gains count less."""
+    """What the robot gains on this route; later gains count less."""
     time_s: float = 0.0
-    """When the last marker is reached."""
+    """Time from the start until the last marker is reached."""
     pose: Pose = Pose(0.0, 0.0, 0.0, 1.0)
-    """Where the robot stands then."""
+    """Where the robot stands at the end of the route."""
     markers: tuple[int, ...] = ()
-    """Indices of the markers, in order."""
+    """Indices of the markers, in the order of the visits."""
     board: tuple[int, ...] = ()
-    """State of each marker then, for a game in which a route changes the worth of later markers."""
+    """State of each marker at the end, for a game in which a route changes the worth of later
+    markers."""
 
 
 def best_route(
     start: Route, grow: Callable[[Route], Iterable[Route]], depth: int, width: int
 ) -> Route:
-    """Search for the best route; of equal ones, the shorter and earlier one (a beam search).
+    """Search for the route of the highest worth (a beam search); the shorter one wins a tie.
 
     Args:
         start: the route without markers.
-        grow: returns a route's continuations by one marker.
+        grow: returns all routes that continue a route by one marker.
         depth: how many markers a route has at most.
         width: how many routes are kept at each step.
     """

@@ -17,14 +17,15 @@ STAND, TURN_LEFT, FORWARD, TURN_RIGHT = (Key(Level.LOCOMOTION, digit) for digit 
 RESTART = Key(Level.LOCOMOTION, RESTART_KEY)
 
 SPEED_M_S = 0.057
-"""Walking speed of the sample hexapod; it is close enough for plans with other robots."""
+"""Walking speed of the sample hexapod; with other robots it is near enough for plans."""
 TURN_RAD_S = math.radians(21)
 
 _POSE = Struct("<7f")
 _FLOAT_BYTES = 4
 
 _STRAY_RAD = math.radians(16)
-"""Half the angle of one turn sequence: if the bearing is smaller than this, the robot walks."""
+"""Half the angle by which one turn sequence turns the robot: at smaller bearings the robot
+walks."""
 _NEAR_M = 0.10
 """Nearer to the target than this, the robot walks at bearings up to `_NEAR_STRAY_RAD`, because the
 bearing changes fast there.
@@ -34,10 +35,10 @@ _NEAR_STRAY_RAD = math.radians(45)
 _FALLEN_TICKS = 2 * BEATS_PER_S
 _TANGLED_TICKS = 8 * BEATS_PER_S
 _TANGLED_M = 0.36
-"""Two robots this near for `_TANGLED_TICKS` have caught each other's legs."""
+"""Two robots that are this near for `_TANGLED_TICKS` count as caught in each other's legs."""
 _STUCK_TICKS = 4 * BEATS_PER_S
 _STUCK_M = 0.06
-"""A robot that walks for `_STUCK_TICKS` and moves less than this is blocked."""
+"""A robot that walks for `_STUCK_TICKS` and moves less than this counts as blocked."""
 _EVADE_TICKS = 6 * BEATS_PER_S
 
 _PASS_M = 0.42
@@ -64,11 +65,11 @@ class Pose(NamedTuple):
         return math.remainder(angle, math.tau)
 
     def distance_m(self, x_m: float, y_m: float) -> float:
-        """Return the distance to a point on the floor."""
+        """Return the distance to a point on the floor [m]."""
         return math.hypot(x_m - self.x_m, y_m - self.y_m)
 
     def travel_s(self, x_m: float, y_m: float, reach_m: float = 0.0) -> float:
-        """Return the time to turn to a point and to walk until it is within reach."""
+        """Return the time to turn to a point and to walk until it is within reach [s]."""
         walk_m = max(0.0, self.distance_m(x_m, y_m) - reach_m)
         return abs(self.bearing_rad(x_m, y_m)) / TURN_RAD_S + walk_m / SPEED_M_S
 
@@ -94,7 +95,7 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 
 
 class Pilot:
-    """Brings one robot to points: turns, walks, passes the other robot, frees itself.
+    """Chooses keys that bring one robot to a point: to turn, walk, pass the other robot, get free.
 
     It changes the key only where a sequence ends: half a step does not move the robot forward, and
     half a turn turns it the wrong way.
@@ -113,7 +114,9 @@ class Pilot:
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """Return the key that brings the robot nearer to a point, or [x]; None keeps the last key.
+        """Return the key to press now to come nearer to a point, or [x].
+
+        None keeps the present key.
 
         Args:
             frame: the newest frame.
@@ -132,7 +135,7 @@ class Pilot:
     def _sequence_ended(self, seat: SeatFrame) -> bool:
         """Say whether the current sequence has ended.
 
-        It always has at level A, for key 0, and for a key with a single posture.
+        At level A, for key 0 and for a key with a single posture the answer is always yes.
         """
         before, self._posture = self._posture, seat.posture
         if seat.level != Level.LOCOMOTION or seat.key == STAND.key:
@@ -140,7 +143,7 @@ class Pilot:
         return seat.posture < before or self._postures[seat.key] == 1
 
     def _must_restart(self, poses: list[Pose], now: int) -> bool:
-        """Say whether the robot was on its back, or in another robot's legs, for too long."""
+        """Say whether the robot has been on its back, or very near to another one, for too long."""
         pose = poses[self._seat]
         others = [other for other in poses if other is not pose]
         tangled = any(pose.distance_m(other.x_m, other.y_m) < _TANGLED_M for other in others)
@@ -183,7 +186,10 @@ class Pilot:
         return _key_for(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
 
     def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
-        """Return the bearing, changed to pass a robot in the way: on the right if there is room."""
+        """Return the bearing to walk in.
+
+        It passes a robot in the way, on the right if there is room.
+        """
         blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
         if abs(math.remainder(bearing_rad - blocked_rad, math.tau)) > _AHEAD_RAD:
             return bearing_rad
@@ -191,7 +197,7 @@ class Pilot:
         return right_rad if self._is_free(pose, right_rad) else left_rad
 
     def _is_free(self, pose: Pose, bearing_rad: float) -> bool:
-        """Say whether there is room before the wall in this direction."""
+        """Say whether a robot that walks in this direction has room before the wall."""
         angle = pose.heading_rad + bearing_rad
         ahead_m = pose.x_m + _WALL_M * math.cos(angle), pose.y_m + _WALL_M * math.sin(angle)
         return all(abs(at) <= limit for at, limit in zip(ahead_m, self._limits_m, strict=True))
@@ -202,7 +208,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Return the key to walk if the bearing is at most `stray_rad`, else the key to turn to it."""
+    """Return the key to walk if the bearing is at most `stray_rad`, else the key to turn."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD
@@ -210,7 +216,7 @@ def _key_for(bearing_rad: float, stray_rad: float) -> Key:
 
 
 def straight(sheet: Sheet, seat: int) -> Brain:
-    """Make the brain of the simplest bot of every game: it walks straight ahead."""
+    """Make a brain that walks straight ahead: the simplest bot of every game."""
 
     def brain(frame: Frame) -> Key | None:
         standing = frame.seats[seat]

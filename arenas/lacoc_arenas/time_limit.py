@@ -1,10 +1,12 @@
-"""The time that a bot may take: a bot that never answers ends as one that raises an error.
+"""The time that a bot may take: a bot that never answers ends like one that raises an error.
 
-A thread looks several times a second at the bots that have been called and have not answered. What
-it counts is processor time of the bot's own thread, so a busy machine takes nothing from a bot.
-A bot that waits (sleeps, reads, holds a lock) uses none; the looks themselves are counted there,
-and on a busy machine there are fewer of them. The limits are a thousand times what bots need, and
-decide no match: a match in which a bot does not answer has no result.
+A thread looks several times a second at the bots that were called and have not answered. Two times
+are limited. The first is the processor time of the bot's own thread, so a busy machine takes
+nothing from a bot. The second is the time in which a bot uses no processor, because it sleeps,
+reads or holds a lock. It is counted in looks, and a busy machine looks less often.
+
+The limits are a thousand times what bots need. They decide no match: a match in which a bot does
+not answer has no result.
 """
 
 import ctypes
@@ -22,11 +24,11 @@ from lacoc_shared.words import Phrase, say
 
 LOOK_S = 0.25
 _IGNORED_LOOKS = 20
-"""A bot that goes on after this many interruptions ends the process."""
+"""If a bot goes on after this many interruptions, the process ends."""
 
 
 class Most(NamedTuple):
-    """The most time that a bot may take [s]."""
+    """The longest times that a bot may take [s]."""
 
     begin_s: float = 60.0
     """Processor time to load the file, and to make a brain; big libraries need seconds."""
@@ -37,7 +39,7 @@ class Most(NamedTuple):
     wait_s: float = 60.0
     """Time that a bot waits in one call without using the processor."""
     match_wait_s: float = 600.0
-    """Time that it waits in all frames of a match."""
+    """Time that a bot waits in all frames of a match without using the processor."""
 
 
 MOST = Most()
@@ -57,27 +59,28 @@ def _end_process(said: Phrase) -> None:
 
 
 when_stuck: Callable[[Phrase], None] = _end_process
-"""Called with what to say of a bot that can't be interrupted; it ends the process."""
+"""Called with the message about a bot that can't be interrupted. By default it shows the message
+and ends the process."""
 
 NAME_BYTES = 256
 
 
 class _Value:
-    """A value that nobody else reads, in place of shared memory."""
+    """A value in this process only; used until other processes read it from shared memory."""
 
     def __init__(self, value: Any) -> None:
         self.value = value
 
 
 class ShownBots(NamedTuple):
-    """What another process may see of the bots of this one, in shared memory.
+    """What another process may read about the bots of this process, in shared memory.
 
-    A bot may hold Python's lock, as in a sum without an end, so that no other thread of its process
-    runs. Then another process must name it.
+    A bot may hold Python's lock, for example in an endless sum, so that no other thread of its
+    process runs. Then another process must say which bot it is.
     """
 
     bot: Any
-    """`bot.value`: name of the bot that is asked now, UTF-8; empty: none."""
+    """`bot.value`: name of the bot that is being asked, UTF-8; empty: no bot is being asked."""
     looks: Any
     """`looks.value`: how often this process has looked at its bots."""
 
@@ -86,7 +89,7 @@ shown = ShownBots(_Value(b""), _Value(0))
 
 
 class Timer:
-    """Counts the time of one bot in one match.
+    """Measures the time that one bot takes in one match.
 
     Args:
         bot: the bot's name, for messages.
@@ -96,13 +99,13 @@ class Timer:
         self.bot = bot
         self._name = bot.encode()[: NAME_BYTES - 1]
         self.used_s = 0.0
-        """Processor time of all frames."""
+        """Processor time that the bot used in all frames [s]."""
         self.waited_s = 0.0
-        """Time that it waited in all frames."""
+        """Time that the bot waited in all frames [s]."""
         _watch()
 
     def frame(self, function: Callable[..., Any], *arguments: object) -> Any:
-        """Show a frame to a brain: call a function, within the limits of a frame and of a match.
+        """Call a brain with a frame, within the limits for a frame and for a match.
 
         Raises:
             TimeUp: if it takes too long.
@@ -110,7 +113,7 @@ class Timer:
         return self._call(True, function, arguments)
 
     def begin(self, function: Callable[..., Any], *arguments: object) -> Any:
-        """Load a bot or make a brain: call a function, within the limit for that.
+        """Call a function that loads a bot or makes a brain, within the limit for this.
 
         Raises:
             TimeUp: if it takes too long.
@@ -146,13 +149,13 @@ class _Call:
 
     def __init__(self, timer: Timer, is_frame: bool, thread: int) -> None:
         self.why: Phrase | None = None
-        """Why it takes too long; None: it does not."""
+        """Why the bot takes too long; None: it does not."""
         self._timer = timer
         self._is_frame = is_frame
         self._thread = thread
         self._began_s = time.thread_time()
         self._first_s: float | None = None
-        """What `_thread_time_s` gave at the first look."""
+        """The thread's processor time at the first look [s]."""
         self._last_s = 0.0
         self._waited_s = 0.0
         self._interrupted = 0
@@ -160,7 +163,7 @@ class _Call:
         self._has_ended = False
 
     def end(self) -> None:
-        """End the call: nothing interrupts this thread any more."""
+        """Mark the call as ended, so that nothing interrupts this thread any more."""
         with self._lock:
             if self._has_ended:
                 return
@@ -192,7 +195,7 @@ class _Call:
             when_stuck(self._said(self.why))
 
     def _said(self, why: Phrase) -> Phrase:
-        """Return the message, with the line of the bot's file where its thread is."""
+        """Return the message about a bot that does not answer, with the line that it is at."""
         frame, bot = sys._current_frames().get(self._thread), self._timer.bot
         while frame is not None and frame.f_code.co_filename != bot:
             frame = frame.f_back
@@ -217,11 +220,11 @@ _calls: dict[int, _Call] = {}
 """The calls that have not returned, by thread."""
 _watcher: threading.Thread | None = None
 _signals_come = False
-"""Whether the main thread takes the signal that interrupts a bot."""
+"""Whether signals can interrupt a bot that runs in the main thread."""
 
 
 def _watch() -> None:
-    """Begin to look, if no thread of this process looks yet (after a fork none does)."""
+    """Start the watching thread, if this process has none (after a fork it has none)."""
     global _watcher, _signals_come
     if sys.platform != "win32" and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGVTALRM, _on_signal)
@@ -240,7 +243,7 @@ def _look() -> None:
 
 
 def _interrupt(thread: int) -> None:
-    """Let a thread raise `TimeUp`."""
+    """Make a thread raise `TimeUp`."""
     if sys.platform != "win32" and _signals_come and thread == threading.main_thread().ident:
         signal.pthread_kill(thread, signal.SIGVTALRM)  # this wakes a sleeper too
     else:
@@ -255,13 +258,13 @@ def _on_signal(number: int, stack: FrameType | None) -> None:
 
 
 def _raise_in(thread: int, error: type[TimeUp] | None) -> None:
-    """Let a thread raise an error; None takes back what it has not raised yet."""
+    """Make a thread raise an error; with None, take back an error that it has not raised yet."""
     raised = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), raised)
 
 
 def _thread_time_s(thread: int) -> float:
-    """Return the processor time of a thread, or of this process where a system can't tell."""
+    """Return the processor time of a thread [s]; of the whole process if the system can't tell."""
     if sys.platform == "linux":
         return time.clock_gettime(time.pthread_getcpuclockid(thread))
     return time.process_time()

@@ -1,1 +1,1 @@
-"""Clients of a court: controllers, referees, spectators, gateways."""
+"""Clients of a court: controllers, referees, spectators and gateways."""

@@ -29,7 +29,7 @@ app = typer.Typer(
 )
 
 _LARGEST_C_FILE = 256 * 1024
-"""Largest C file [bytes]."""
+"""Largest C file that is read [bytes]."""
 
 _Robot = Annotated[
     str,
@@ -164,8 +164,8 @@ def _stands(robot: str, contest: Path | None, notes: list[Phrase]) -> RobotSpec:
     """Read a robot and check that it can stand.
 
     Raises:
-        FileRefused: with every mistake in the robot's file, or with what the robot did instead
-            of standing.
+        FileRefused: with every mistake in the robot's file, or with one that says what the robot
+            did instead of standing.
     """
     name, data = find_robot(robot)
     spec = _spec(name, data, contest)
@@ -184,7 +184,7 @@ def _spec(name: str, data: bytes, contest: Path | None) -> RobotSpec:
 
 
 def _gait_beside(robot: str, spec: RobotSpec, notes: list[Phrase]) -> Gait:
-    """Read the gait files beside a robot's file; leave out and note those with mistakes."""
+    """Read the gait files beside a robot's file; leave out files with mistakes, and note this."""
     tables: list[PostureTable | LocomotionTable] = []
     for file in sample_gait_files(robot):
         if file is None:

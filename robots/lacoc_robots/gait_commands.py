@@ -211,10 +211,10 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _is_locomotion(target: Path) -> bool:
-    """Say from its name whether the file to write holds locomotion (level B).
+    """Return whether a file to write will hold locomotion (level B), judged by its name.
 
     Raises:
-        UserError: if this command does not write such files.
+        UserError: if this command does not write files with such a name.
     """
     if target.suffix.lower() not in (".txt", ".xlsx"):
         raise UserError(say("convert.target", path=str(target)))
@@ -278,9 +278,10 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet that each posture lifts; postures in a row that lift the same feet count once.
+    """Name the feet that each posture lifts.
 
-    Only the first six steps are named; "…" stands for the rest.
+    Postures in a row that lift the same feet are one step. Only the first six steps are named; "…"
+    stands for the rest.
     """
     steps = [step for step, _ in itertools.groupby(_lifted(p, labels) for p in sequence)]
     none, then = render(say("gait-command.no-feet")), render(say("gait-command.then"))
@@ -289,9 +290,9 @@ def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
 
 
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
-    """Return the labels of the legs whose feet are above the lowest foot.
+    """Return the labels of the legs whose feet are higher than the lowest foot.
 
-    The body is taken to be level, and all links to have one length.
+    For this the body is taken to be level, and all links to be of one length.
     """
     legs = len(labels)
     # A positive 1st joint lifts the leg, and a positive 2nd joint swings the shank up (rules 1).

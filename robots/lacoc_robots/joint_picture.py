@@ -61,7 +61,7 @@ def _ids(leg: int, legs: int, lit: Collection[int], outward: int) -> list[tuple[
         leg: index of the leg.
         legs: number of legs.
         lit: ids of the joints to highlight.
-        outward: 1: the joint at the body comes first; -1: the joint at the body comes last.
+        outward: 1 if the joint at the body comes first, -1 if it comes last.
     """
     joints = [leg + legs * level for level in range(JOINTS_PER_LEG)][::outward]
     parts: list[tuple[str, str]] = []

@@ -40,7 +40,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
     """Root link (L0), 1st link (L1), 2nd link (L2), from hinge to hinge."""
     radius_m: float
     masses_kg: tuple[float, float, float]
-    """Masses of the root, 1st and 2nd link."""
+    """Masses of the root link, the 1st and the 2nd link."""
     range_rad: tuple[float, float]
     """Lowest and highest angle of each of the three joints."""
     accent: bool = False
@@ -48,7 +48,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def range_deg(self) -> tuple[float, float]:
-        """The range in the file's degrees, rounded: 60 degrees, not 59.99999999999999."""
+        """The range in degrees, rounded to the numbers of the file: 60, not 59.99999999999999."""
         low, high = self.range_rad
         return round(math.degrees(low), 9), round(math.degrees(high), 9)
 

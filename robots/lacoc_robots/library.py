@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 GROUP = "lacoc.robots"
 
 WORKSHOPS_ROBOT = "hexapod"
-"""The installed robot of the workshop, for whoever names none."""
+"""Name of the workshop's robot, which is used if nobody names a robot."""
 
 GAIT_NAMES = ("Loco-data.txt", "LocoTra-data.txt")
 """Names of the gait files in a folder, by level (rules 2)."""
@@ -26,9 +26,9 @@ class FolderGait(NamedTuple):
     """The gait files that lie beside a robot file."""
 
     postures: SentFile | None
-    """Loco-data.txt"""
+    """Loco-data.txt (level A); None: there is no such file."""
     locomotion: SentFile | None
-    """LocoTra-data.txt"""
+    """LocoTra-data.txt (level B); None: there is no such file."""
 
 
 def find_robot(name_or_path: str) -> tuple[str, bytes]:

@@ -15,40 +15,40 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     legs_min: float = 4
     legs_max: float = 8
-    """The number of legs must also be even."""
+    """Most legs; the number of legs must also be even."""
     width_m: float = 0.45
     """Largest extent along x: with every angle 0, in the start posture, and with key 0."""
     length_m: float = 0.45
-    """Largest extent along y, as `width_m`."""
+    """Largest extent along y; otherwise as `width_m`."""
     height_m: float = 0.25
-    """Largest extent along z, as `width_m`."""
+    """Largest extent along z; otherwise as `width_m`."""
     mass_min_kg: float = 0.3
     mass_max_kg: float = 3.0
     part_mass_min_kg: float = 0.005
     part_mass_max_kg: float = 1.0
     link_min_m: float = 0.02
-    """Shortest 1st and 2nd link; the root link may be as short as its radius."""
+    """Shortest 1st and 2nd link that is allowed; the root link may be as short as its radius."""
     link_max_m: float = 0.12
     radius_min_m: float = 0.005
     radius_max_m: float = 0.03
     range_deg: float = 150.0
     """Largest angle of a joint in either direction."""
     ang_min_deg_s: float = 240.0
-    """Largest AngMin: the speed at which a commanded angle moves."""
+    """Largest AngMin: speed at which a commanded angle may move to the target posture."""
     torque_n_m: float = 2.0
     """Largest torque of a servo."""
     hold_s: float = 5.0
     """Longest time that a drive may hold a posture."""
     drop_m: float = 0.05
-    """Largest height of the lowest part above the floor at the start."""
+    """Largest height above the floor, at the start, of the robot's lowest part."""
     kp_max: float = 200.0
-    """Stiffest servo [N m/rad]: the time step is too long for a stiffer one."""
+    """Largest stiffness of a servo [N m/rad]: for a stiffer servo the physics step is too long."""
     kv_max: float = 5.0
-    """Strongest damping in a servo [N m s/rad]."""
+    """Largest damping of a servo [N m s/rad]."""
     damping_max: float = 1.0
-    """Strongest damping in a joint [N m s/rad]."""
+    """Largest damping of a joint [N m s/rad]."""
     armature_min: float = 0.002
-    """Smallest inertia of a motor [kg m2]: less makes the simulation fragile."""
+    """Smallest inertia of a motor [kg m2]: with less the simulation becomes unstable."""
     armature_max: float = 0.02
     friction_max: float = 1.5
 

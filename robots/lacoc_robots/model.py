@@ -11,9 +11,11 @@ from lacoc_robots.robot import RobotSpec
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
 MODEL_VERSION = 2
-"""Increased when the model of a robot or its solver changes, because paths change then.
+"""Version of the models.
 
-Version 1 had a dense Jacobian, and motors without a highest speed.
+It increases when the model of a robot or the solver changes, because robots then walk differently
+and older records give other results. Version 1 had a dense Jacobian, and motors without a highest
+speed.
 """
 
 TIMESTEP_S = 0.002
@@ -23,9 +25,10 @@ STEPS_PER_TICK = 10
 FLOOR_CONTYPE = 1
 """Collision bit of floor and walls."""
 FLOOR_CONAFFINITY = 0xFFFE
-"""Floor and walls collide with every robot."""
+"""Collision mask of floor and walls: they collide with the bits of all robots."""
 MOST_SEATS = 15
-"""Most robots in a world: each needs a collision bit, and this many are left."""
+"""Most robots in a world: each robot needs a collision bit of its own, and so many bits are
+left."""
 
 # `MjData.warning` counts warnings. Without this handler MuJoCo also writes MUJOCO_LOG.TXT into
 # the current folder.
@@ -37,7 +40,7 @@ _TORSION_AND_ROLL = (0.005, 0.0001)  # MuJoCo's defaults; unused with condim 3
 
 
 def set_options(parent: mj.MjSpec) -> None:
-    """Set the official solver options: only with these is a match the same everywhere."""
+    """Set the official solver options, so that a match is the same everywhere."""
     parent.option.timestep = TIMESTEP_S
     parent.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     parent.option.solver = mj.mjtSolver.mjSOL_NEWTON
@@ -48,7 +51,7 @@ def set_options(parent: mj.MjSpec) -> None:
 
 
 def collision_bits(seat: int, seats: int) -> tuple[int, int]:
-    """Compute contype and conaffinity of a robot, which collides with everything but itself.
+    """Return contype and conaffinity of a robot, so that it collides with everything but itself.
 
     Raises:
         ValueError: if there is no such seat, or there are too many seats.

@@ -1,4 +1,4 @@
-"""Reads a robot and its gait from files, as somebody names them."""
+"""Reads a robot and its gait from the files that a user names."""
 
 from pathlib import Path
 

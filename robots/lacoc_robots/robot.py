@@ -9,8 +9,8 @@ from lacoc_robots.leg import Capsule, LegSpec, Point
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
 NO_LOAD_SPEED = 3.0
-"""Highest speed of a motor, as a multiple of AngMin: on the workshop's robot this gives the speed
-of a common hobby servo, 60 degrees in 0.17 s."""
+"""Highest speed of a motor, as a multiple of AngMin. For the workshop's robot the result is the
+speed of a common hobby servo, 60 degrees in 0.17 s."""
 
 
 class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
@@ -18,20 +18,21 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     size_m: tuple[float, float, float]
-    """Body: width (x), length (y), height (z)."""
+    """Size of the body: width (x), length (y), height (z) [m]."""
     body_mass_kg: float
     legs: tuple[LegSpec, ...]
-    """Clockwise from the right front, seen from above."""
+    """The legs, clockwise from the right front, seen from above."""
     start_height_m: float
     """Height of the body's underside above the floor at the start."""
     start_posture: Posture
     """(joints,) angles [rad], by joint id."""
     ang_min_rad_s: float
-    """Speed of commanded angles towards the target posture: the workshop's AngMin."""
+    """Speed with which commanded angles move to the target posture: the workshop's AngMin."""
     advance: Literal["reached", "time"]
-    """When a sequence goes on to its next posture (rules 3)."""
+    """When a sequence goes on to its next posture: see rules 3."""
     hold_us: int
-    """How long a posture is held [µs], from when it is reached or commanded; see `advance`."""
+    """How long a posture is held [µs], counted from when it is reached or from when it is
+    commanded; `advance` says which."""
     kp: float
     """Servo stiffness [N m/rad]."""
     kv: float
@@ -47,7 +48,10 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def joints(self) -> int:
-        """Number of joints; the id of one is leg + legs * level (Root 0, 1st 1, 2nd 2)."""
+        """Number of joints.
+
+        The id of a joint is leg + number of legs * level (Root 0, 1st 1, 2nd 2).
+        """
         return JOINTS_PER_LEG * len(self.legs)
 
     @property
@@ -72,7 +76,10 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def no_load_rad_s(self) -> float:
-        """Highest speed of a motor: its torque falls linearly with speed, to zero here."""
+        """Highest speed of a motor [rad/s].
+
+        A motor's torque falls linearly with speed, and is 0 at this speed.
+        """
         return NO_LOAD_SPEED * self.ang_min_rad_s
 
     @property

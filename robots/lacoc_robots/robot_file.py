@@ -1,7 +1,7 @@
 """Read a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
 
-First every entry is checked by itself, then the robot as a whole. A wrong entry becomes NaN, and a
-check of the whole robot finds a mistake only if all numbers that it needs are known.
+First every entry is checked by itself, then the robot as a whole. A wrong entry becomes NaN. A
+check of the whole robot reports a mistake only if all numbers that it needs are right.
 """
 
 import math
@@ -25,10 +25,10 @@ LARGEST_FILE = 32 * 1024
 """Largest robot file [bytes], the same as for gait files (rules 2)."""
 
 BODY_MIN_M = 0.01
-"""Smallest size of a body in any direction."""
+"""Smallest size of a body in any direction [m]."""
 ANG_MIN_LEAST_DEG_S = 1.0
 KP_LEAST = 1.0
-"""Softest servo [N m/rad]."""
+"""Smallest stiffness of a servo [N m/rad]."""
 TORQUE_LEAST_N_M = 0.1
 
 _ROUNDING_KG = 1e-9  # rounding error of a sum of decimal masses
@@ -73,7 +73,7 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table; a wrong number is noted and becomes NaN in the robot (0 in `hold_us`)."""
+    """Read every table. A wrong number is noted, and becomes NaN in the robot (0 in `hold_us`)."""
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)
@@ -174,7 +174,10 @@ def _leg(
 
 
 def _position(table: Entries, size_m: tuple[float, ...], limits: Limits) -> tuple[float, ...]:
-    """Read where a leg is fixed: in metres, or on the body, whose sides are -1 and 1."""
+    """Read where a leg is fixed to the body.
+
+    The place is given in metres, or as a share of the body, whose sides are at -1 and 1.
+    """
     if "position_m" not in table:
         table.ask("on_body")
     if "position_m" not in table and "on_body" in table:
@@ -186,7 +189,13 @@ def _position(table: Entries, size_m: tuple[float, ...], limits: Limits) -> tupl
 
 
 def _link(table: Entries, default: _LinkEntries | None, limits: Limits) -> _LinkEntries:
-    """Read the table [link], or a leg's own entries; `default` has what the leg leaves out."""
+    """Read the table [link], or a leg's own entries.
+
+    Args:
+        table: the table.
+        default: the values of entries that a leg leaves out.
+        limits: the contest's limits.
+    """
 
     def own(name: str) -> bool:
         table.ask(name)
@@ -263,11 +272,11 @@ def _check_mass(root: Entries, robot: RobotSpec, limits: Limits) -> None:
 def too_large(
     bounds: tuple[Point, Point], posture: Phrase, limits: Limits
 ) -> Iterator[tuple[Phrase, Phrase]]:
-    """Yield for each size of a robot that is too large what was found and expected (rules 1).
+    """Yield the size found and the size allowed, for each size that is too large (rules 1).
 
     Args:
         bounds: lowest and highest x, y and z of the robot in a posture [m]; NaN: unknown.
-        posture: what the posture is called (`posture.*`).
+        posture: name of the posture (`posture.*`).
         limits: the contest's limits.
     """
     low, high = bounds

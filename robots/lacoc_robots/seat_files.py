@@ -18,7 +18,7 @@ _POSTURES = ("Loco-data.txt", "Loco-data.xlsx", "Loco-data-6legs.txt")
 _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
 
 USUAL_NAMES = ("robot.toml", *GAIT_NAMES)
-"""Names under which the files of a join usually lie in a folder."""
+"""Usual names of the files of a join in a folder."""
 
 _ZIP = b"PK\x03\x04"  # first bytes of a workbook
 
@@ -26,7 +26,7 @@ _Table = PostureTable | LocomotionTable
 
 
 class SeatFiles(NamedTuple):
-    """The files of a join; None: the contest's robot, or its sample gait."""
+    """The files of a join; where a file is None, the contest's robot or its sample gait is used."""
 
     robot: SentFile | None = None
     postures: SentFile | None = None
@@ -42,7 +42,7 @@ def gather(
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
         gaits: gait files, at most one for each level; none: the gait files beside the robot file.
         notes: receives phrases about things in a workbook that are legal, but probably not meant.
-            For a text file the court sends them.
+            For text files the court sends such phrases.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -86,9 +86,9 @@ def to_send(
 ) -> tuple[SeatFiles, FileRefused | None]:
     """Turn files as a team has them into files that a court reads.
 
-    Workbooks with mistakes are sent without their contents. Whoever reads the files then finds the
-    mistakes of the other files too. A court says whether it needs the files now: in a match that is
-    on, a seat may be taken again without them.
+    A workbook with mistakes is sent without its content, so that the court can report the mistakes
+    of the other files too. The court also says whether it needs the files at all: in a match that
+    has begun, a seat may be taken again without files.
 
     Args:
         files: the files of a join.
@@ -96,7 +96,7 @@ def to_send(
         notes: receives phrases about things in a workbook that are legal, but probably not meant.
 
     Returns:
-        The files for the court, and the mistakes of the workbooks; None: there are none.
+        The files for the court, and the mistakes of the workbooks; None: they have no mistakes.
 
     Raises:
         UserError: if a sequence is empty, or uses a posture that does not exist.
@@ -115,8 +115,8 @@ def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = N
     """Make level B from the postures if there is no locomotion file.
 
     Args:
-        files: files as text; a posture file with mistakes is left to the court, which knows the
-            robot.
+        files: files as text. A posture file with mistakes stays as it is: the court reports them,
+            because it has the robot.
         sequences: for each digit key from 0 on, the digits of its postures in order; None: as in
             the sample gait, if the file has all those postures.
 
@@ -160,7 +160,10 @@ def files_in(folder: Path) -> SeatFiles:
 
 
 def _newest_in(folder: Path) -> Iterator[Path | None]:
-    """Yield the newest gait file of level A, then that of level B; None: there is none."""
+    """Yield the newest gait file of level A, then that of level B.
+
+    None for a level without a file.
+    """
     for patterns in (_POSTURES, _LOCOMOTION):
         paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
         yield max(paths, key=lambda path: path.stat().st_mtime, default=None)
@@ -169,8 +172,8 @@ def _newest_in(folder: Path) -> Iterator[Path | None]:
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
     """Return warnings about the gait files in a folder.
 
-    Each LocoTra workbook gives a warning, because it is not read. So does a locomotion file that
-    is older than the posture file.
+    There is a warning for each LocoTra workbook, because it is not read, and for a locomotion file
+    that is older than the posture file.
 
     Args:
         folder: the folder.

@@ -1,6 +1,6 @@
 """Standing: the posture of a robot before play, and the limits within which it must stay.
 
-Pure: a stand test in physics (`stand_test`) or a match says how far the robot moved.
+Pure: how far the robot moved is measured by a stand test in physics (`stand_test`) or by a match.
 """
 
 import math
@@ -16,19 +16,19 @@ from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase, say
 
 STAND_TEST_S = 2.0
-"""Duration of a stand test."""
+"""Duration of a stand test [s]."""
 FARTHEST_M = 0.05
-"""Largest distance of a standing robot's centre from its start, in a match before play."""
+"""In a match before play, the largest distance of a standing robot's centre from its start [m]."""
 FARTHEST_IN_TEST_M = 0.045
-"""The same in a stand test. It is smaller, because a match lets a robot stand for longer, and at
-other places."""
+"""In a stand test, the largest distance of the robot's centre from its start [m]. It is smaller
+than in a match, because there a robot stands for longer, and at other places."""
 MOST_TILT_RAD = math.radians(30.0)
-"""A robot that leans more than this is not upright."""
+"""A robot that leans more than this counts as not upright [rad]."""
 REST_RAD_S = math.radians(0.2)
-"""Fastest joint speed at rest. It is low because a robot whose servos are just too weak sinks by
-only a few degrees a second before it falls."""
+"""A standing robot's joints may move at most this fast [rad/s]. The limit is low, because a robot
+whose servos are just too weak sinks by only a few degrees a second before it falls."""
 REST_M_S = 0.0002
-"""Fastest speed of the centre at rest."""
+"""A standing robot's centre may move at most this fast [m/s]."""
 
 
 class Stood(msgspec.Struct, frozen=True):
@@ -39,9 +39,9 @@ class Stood(msgspec.Struct, frozen=True):
     tilt_rad: float
     """Largest angle between the body's up and the world's up."""
     joint_rad_s: float
-    """Speed of the fastest joint at the end."""
+    """Speed of the fastest joint at the end of the test."""
     centre_m_s: float
-    """Speed of the body's centre at the end."""
+    """Speed of the body's centre at the end of the test."""
     fault: bool = False
     """Whether the simulation became unstable and stopped."""
 
@@ -60,7 +60,7 @@ def standing_posture(gait: Gait, level: Level, start: Posture) -> Posture:
 def standing_postures(
     gait: Gait, levels: Collection[Level], start: Posture
 ) -> dict[Posture, list[Level]]:
-    """Return the postures in which a robot may be told to stand, with the levels of each."""
+    """Return the postures in which a robot may be told to stand, each with its levels."""
     postures: dict[Posture, list[Level]] = {}
     for level in sorted(levels):
         postures.setdefault(standing_posture(gait, level, start), []).append(level)
@@ -70,9 +70,9 @@ def standing_postures(
 def too_large_standing(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], limits: Limits, file: str
 ) -> list[Mistake]:
-    """List where a robot that stands with key 0 is larger than a robot may be (rules 1).
+    """List the sizes in which a robot that stands with key 0 is too large (rules 1).
 
-    Else it could reach a marker while it stands.
+    Otherwise a robot could reach a marker while it stands.
     """
     return [
         Mistake(

@@ -19,13 +19,13 @@ class Entries:
     """The entries of one table; all tables of a file share one list of mistakes."""
 
     def __init__(self, table: dict[str, Any], place: str, file: str, book: list[Mistake]) -> None:
-        """Begin with no entry read.
+        """Prepare to read the entries of a table.
 
         Args:
             table: the table as parsed.
-            place: put before an entry's name, such as "body." or "leg 2, ".
+            place: text before an entry's name in messages, such as "body." or "leg 2, ".
             file: the file's name.
-            book: list that mistakes are appended to.
+            book: list to which mistakes are appended.
         """
         self.place = place
         self._table = table
@@ -82,7 +82,7 @@ class Entries:
         unit: str = "",
         where: Sequence[Mapping[str, Any]] = (),
     ) -> tuple[float, ...]:
-        """Read a list of numbers; NaN for each that is wrong, and for all if their count is wrong.
+        """Read a list of numbers; NaN for each wrong number, and for all if their count is wrong.
 
         Args:
             name: the entry.
@@ -166,11 +166,11 @@ class Entries:
         ]
 
     def ask(self, name: str) -> None:
-        """Allow an entry without reading it."""
+        """Accept an entry without reading it."""
         self._taken.add(name)
 
     def finish(self) -> None:
-        """Note the entries that were neither read nor allowed."""
+        """Note a mistake for each entry that was neither read nor accepted."""
         known = say("robot.one-of", names=sorted(self._taken))
         for name in self._table:
             if name not in self._taken:
@@ -194,7 +194,7 @@ class Entries:
 
 
 def _shown(value: Any) -> Phrase | str:
-    """Show a TOML value as it stands in a file, shortened."""
+    """Return a TOML value as it stands in a file, shortened for a message."""
     if isinstance(value, dict):
         return say("robot.a-table")
     if isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Try a robot in physics if MuJoCo is installed; a contestant's machine may lack it."""
+"""Tries a robot in physics if MuJoCo is installed; it may be missing on a contestant's machine."""
 
 from collections.abc import Collection
 
@@ -10,14 +10,14 @@ from lacoc_shared.words import Phrase, say
 
 
 def not_tried() -> Phrase:
-    """Make the note that the robot was not tried, because MuJoCo is missing."""
+    """Make the note that the robot was not tried in physics, because MuJoCo is missing."""
     return say("robot.not-tried", install=installing.command("server"))
 
 
 def tried(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str, notes: list[Phrase]
 ) -> list[Mistake]:
-    """Try whether a robot stands (`stand_test.try_standing`); add a note if MuJoCo is missing."""
+    """Try whether a robot stands (`stand_test.try_standing`); if MuJoCo is missing, add a note."""
     try:
         from lacoc_robots.stand_test import try_standing
     except ModuleNotFoundError as error:

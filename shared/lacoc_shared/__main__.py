@@ -1,4 +1,4 @@
-"""Run `lacoc` as `python -m lacoc_shared`, for when the command is not on the search path."""
+"""Runs `lacoc` as `python -m lacoc_shared`, where the command is not on the search path."""
 
 import sys
 

@@ -1,7 +1,7 @@
 """Encode messages and decode bytes: msgpack with checks of types and size, one error class.
 
-`msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so nothing that
-arrives is used before its type is known.
+`msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so no value from
+the network is used before its type is checked.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ encode = _encoder.encode
 
 
 class BadMessage(ValueError):
-    """Bytes that are not the expected message; the sender is at fault."""
+    """Bytes that are not the expected message: the fault of the sender."""
 
 
 def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
@@ -30,7 +30,7 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
     Args:
         data: the bytes as they arrived.
         kind: the expected message.
-        max_bytes: a longer payload is refused unread.
+        max_bytes: greatest length; longer data are refused without being decoded.
 
     Raises:
         BadMessage: if there are too many bytes, or they are not msgpack or not this message.
@@ -45,7 +45,7 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
 
 
 class _AnyVersion(msgspec.Struct):
-    """The one field that requests of all versions of the protocol have."""
+    """The only field that the requests of all versions of the protocol have in common."""
 
     protocol: int
 
@@ -54,7 +54,7 @@ def protocol_of(data: bytes, max_bytes: int) -> int:
     """Return the version of the protocol in which a request was sent.
 
     Raises:
-        BadMessage: if there are too many bytes, or they say no version.
+        BadMessage: if there are too many bytes, or they contain no version.
     """
     return decode(data, _AnyVersion, max_bytes).protocol
 
@@ -69,7 +69,7 @@ def _new_decoder(kind: Any) -> msgspec.msgpack.Decoder[Any]:
 
 
 def message_hash(message: bytes) -> bytes:
-    """Hash an encoded `Scene` or `Sheet`: 8 bytes, with which other messages refer to it."""
+    """Return the hash of an encoded `Scene` or `Sheet`: 8 bytes, by which messages refer to it."""
     return hashlib.blake2b(message, digest_size=8).digest()
 
 

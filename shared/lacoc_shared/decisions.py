@@ -71,16 +71,16 @@ class TakeBack(_Decision, frozen=True, tag="take-back"):
     event: int
     """Number of the event."""
     dry_run: bool = False
-    """Only report what would change."""
+    """Whether the decision is not made, and the reply only says what would change."""
 
 
 class Clock(_Decision, frozen=True, tag="clock", omit_defaults=True):
     """Add time to play; a negative number takes time away."""
 
     gives_s: float = 0.0
-    """Seconds added to the time left."""
+    """Seconds that are added to the time left; a negative number takes time away."""
     seconds: float = 0.0
-    """Seconds taken away; only in records that are older than `gives_s`."""
+    """Seconds that are taken away; only in old records, from before `gives_s`."""
 
 
 class Abort(_Decision, frozen=True, tag="abort"):
@@ -91,7 +91,7 @@ class Declare(_Decision, frozen=True, tag="declare"):
     """Declare the winner, also against the result of the rules."""
 
     winner: str
-    """A seat's id, or "draw"."""
+    """Id of the winner's seat, or "draw"."""
 
 
 class Official(_Decision, frozen=True, tag="official"):

@@ -1,9 +1,9 @@
-"""The inputs of a match: all that enters it from outside, each at its beat. The record has them.
+"""The inputs of a match: everything that enters it from outside, each at its beat.
 
-A match is a pure function of its setup and its inputs, beat by beat: the same inputs give the same
-match, bit for bit, live or headless, at any speed (rules 4). Inputs have passed the court's checks
-(token, session, sequence number). The match then decides whether an input has an effect, and a
-replay decides the same.
+The record keeps them. A match is a pure function of its setup and its inputs, beat by beat: the
+same inputs give the same match, bit for bit, live or headless, at any speed (rules 4). Inputs have
+passed the court's checks (token, session, sequence number). The match then decides whether an input
+has an effect, and a replay decides the same.
 """
 
 import msgspec
@@ -29,7 +29,8 @@ class JoinSeat(_Input, frozen=True, tag="join"):
     postures: SentFile | None
     locomotion: SentFile | None
     token_hash: str
-    """Salted hash of the token: a restarted court recognises its seats by it."""
+    """Salted hash of the token, by which a restarted court recognises the controllers of its
+    seats."""
 
 
 class ReadySeat(_Input, frozen=True, tag="ready"):
@@ -53,9 +54,10 @@ class KeySeat(_Input, frozen=True, tag="key"):
     level: int
     key: int
     seen: int = 0
-    """Beat of the newest frame when the key was pressed; 0: no frame of this match yet."""
+    """Beat of the newest frame that the player had seen when the key was pressed; 0: no frame of
+    this match yet."""
     held: int = 0
-    """Beats for which the court delayed the command, to make the seats' links equal."""
+    """Number of beats for which the court delayed the command, to make the seats' links equal."""
     late: int = 0
     """Beats (20 ms each) between the end of the common delay and the command's effect; 0: in time.
     """
@@ -84,7 +86,7 @@ class Decide(_Input, frozen=True, tag="decide"):
 
 
 class Advice(_Input, frozen=True, tag="advice"):
-    """The court measured that the match ran badly, or that it ran well enough after all."""
+    """The court measured that the match ran too badly, or that this is not so any more."""
 
     reasons: tuple[Phrase | str, ...]
     """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:

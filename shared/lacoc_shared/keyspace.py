@@ -9,24 +9,26 @@ from lacoc_shared.words import say
 EVERY_COURT = "lacoc/*/live/court"
 """Key expression for the announcements of all courts that can be reached (Zenoh's liveliness)."""
 DESK = "lacoc/office/desk"
-"""Key expression on which an office's desk takes requests of pages, in a session of its own."""
+"""Key expression of the requests of pages to an office's desk, which has a Zenoh session of its
+own."""
 COMMAND_MAX_BYTES = 1024
-"""Largest command that is read; also largest ready, leave, try or where request."""
+"""Largest command that is read [bytes]; also the largest ready, leave, try or where request."""
 ENTER = "enter"
-"""Used in place of a decision's name: the referee only shows the token."""
+"""Stands in the place of a decision's name when a referee only shows the token."""
 DECISION_MAX_BYTES = 4096
-"""Largest decision of a referee that is read."""
+"""Largest decision of a referee that is read [bytes]."""
 EVENTS_LISTED = 2000
-"""How many events of a match a court lists and a client keeps at most: the newest ones. A reply has
-a size limit, and a practice may last for days."""
+"""How many events of a match a court lists, and a client keeps, at most: the newest ones. There is
+a limit because a reply has a greatest size, and a practice may last for days."""
 JOIN_MAX_BYTES = 65_536
-"""Largest join, with all its files, that is read."""
+"""Largest join, with all its files, that is read [bytes]."""
 
 ASSIGN_MAX_BYTES = 196_608
-"""Largest assignment of the office that is read, with the files of two teams and more."""
+"""Largest assignment of the office that is read [bytes]; it has the files of two teams, and
+more."""
 
 COPY_PART_BYTES = 131_072
-"""Largest part of a record that a court sends to the office at once."""
+"""Largest part of a record that a court sends to the office at once [bytes]."""
 
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
@@ -66,7 +68,10 @@ class KeySpace:
 
     @property
     def event(self) -> str:
-        """Key expression of events: numbered, never lost; a query returns those of the match."""
+        """Key expression of events: numbered, never lost.
+
+        A query returns all listed events of the match.
+        """
         return f"{self.root}/event"
 
     @property
@@ -108,7 +113,7 @@ class KeySpace:
         return f"{self.root}/referee/{ENTER}"
 
     def decision(self, name: str) -> str:
-        """Return the key expression of a decision, which gets a reply; `*` is for all decisions."""
+        """Return the key expression of a decision, which gets a reply; `*` means all decisions."""
         return f"{self.root}/referee/{name}"
 
     @property
@@ -125,6 +130,6 @@ class KeySpace:
         """Return the key expression of an office's request.
 
         Args:
-            what: assign, withdraw, tell, copy or retire; `*` is for all of them.
+            what: assign, withdraw, tell, copy or retire; `*` means all of them.
         """
         return f"{self.root}/office/{what}"

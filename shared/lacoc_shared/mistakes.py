@@ -1,10 +1,10 @@
-"""Errors about something that a user gave us, worded so that the user can correct it.
+"""Errors about something that a user gave to LACOC, with sentences that help to correct it.
 
-There are two families. `FileRefused` carries every mistake in a file, each with its place: a
-file is refused as a whole (rules 2), so all its mistakes are listed at once.
-`UserError` is a sentence that says what was found and what to do, or several of them; the
-command line prints it and exits with code 2. Both carry phrases (`lacoc_shared.words`), which
-are rendered in the language of the process; a plain text is shown as it is.
+There are two families. `FileRefused` carries every mistake in a file, each with its place: a file
+is refused as a whole (rules 2), so all its mistakes are listed at once. `UserError` has one
+sentence or several that say what was found and what to do; the command line prints them and exits
+with code 2. Both carry phrases (`lacoc_shared.words`), which are rendered in the language of the
+process; a plain text is shown as it is.
 """
 
 import codecs
@@ -26,7 +26,7 @@ name that is not UTF-8 becomes its number, such as `\x98`.
 
 
 FILES_REFUSED = "note.files-refused"
-"""Code of the note that a join succeeded without its files."""
+"""Code of the note that a join succeeded, but its files were refused."""
 _NOTED = 3  # notes are read in passing; a refused join lists all mistakes
 
 
@@ -34,15 +34,15 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One mistake in a file, with its place."""
 
     file: str
-    """Name of the file as the user knows it."""
+    """Name of the file by which the user calls it."""
     found: Phrase | str
-    """What is there; a text is quoted from the file."""
+    """What was found there; a text is quoted from the file."""
     expected: Phrase | str
     """What should be there, or what to do."""
     row: int | None = None
-    """Row (in a text file: line), counted from 1."""
+    """Number of the row (in a text file: line), counted from 1."""
     column: int | None = None
-    """Cell in the row, counted from 1."""
+    """Number of the cell in the row, counted from 1."""
     joint: int | None = None
     """Joint id, 0-17 for six legs (rules 1)."""
     leg: str | None = None
@@ -92,7 +92,7 @@ class FileRefused(ValueError):
         self.mistakes = mistakes
 
     def notes(self) -> tuple[Phrase, ...]:
-        """Return notes for a contestant who joins, but whose new files were refused.
+        """Return notes for a contestant whose join succeeded, but whose new files were refused.
 
         The first note says how many mistakes there are. The others are the first few mistakes.
         """
@@ -121,7 +121,7 @@ class UserError(Exception):
         return only if isinstance(only, Phrase) else say("plain.text", text=only)
 
     def each(self, put: Callable[[Phrase | str], Phrase]) -> "UserError":
-        """Return an error with each sentence put into another one, such as one with its place."""
+        """Return an error with each sentence put into another one, which may add a place."""
         return UserError(*map(put, self.said))
 
     def __str__(self) -> str:
@@ -131,8 +131,8 @@ class UserError(Exception):
 class Gathered:
     """Gathers mistakes, so that a user learns of all of them at once.
 
-    A block `with gathered:` may raise `UserError`. It is noted, and the work goes on after the
-    block. `check` then raises all that was noted.
+    A block `with gathered:` may raise `UserError`. The error is noted, and the program goes on
+    after the block. `check` then raises everything that was noted as one error.
     """
 
     def __init__(self) -> None:
@@ -148,10 +148,10 @@ class Gathered:
         return True
 
     def check(self) -> None:
-        """Raise what was noted.
+        """Raise the errors that were noted, as one error; do nothing if there are none.
 
         Raises:
-            UserError: if anything was.
+            UserError: if any error was noted.
         """
         if self._said:
             raise UserError(*self._said)

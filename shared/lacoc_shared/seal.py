@@ -1,4 +1,4 @@
-"""Hashed tokens, and the seals that prove which seat a command is from.
+"""Hashes of tokens, and the seals that prove from which seat a command comes.
 
 A seat's token is sent only with a join, and a referee's token with each decision. After a join
 the session's secret, 16 bytes from the court, seals every command and request of the seat: a
@@ -16,9 +16,9 @@ _HASH_BYTES = 32
 def hash_token(token: str, salt: bytes) -> str:
     """Hash a token for storage: "salt$hash", both hexadecimal.
 
-    The hash is fast, because a court must verify it within a beat. This is safe for random
-    tokens (`lacoc_shared.contest.tokens`). A short word that a person chose can be guessed from
-    the hash, so don't publish records with such tokens while the tokens are in use.
+    The hash is a fast one, because a court must verify it within a beat. For random tokens
+    (`lacoc_shared.contest.tokens`) this is safe. A short word that a person chose can be guessed
+    from the hash, so don't publish records with such tokens while the tokens are in use.
 
     Args:
         token: the token.
@@ -28,7 +28,7 @@ def hash_token(token: str, salt: bytes) -> str:
 
 
 def verify_token(token: str, token_hash: str) -> bool:
-    """Say whether a token is the hashed one; takes the same time for every wrong token."""
+    """Return whether a token has this hash; takes the same time for every wrong token."""
     salt, _, digest = token_hash.partition("$")
     try:
         return hmac.compare_digest(_hash(token, bytes.fromhex(salt)), bytes.fromhex(digest))
@@ -51,7 +51,15 @@ def command_mac(
 
 
 def request_mac(secret: bytes, key_expression: str, session: int, seq: int, *rest: int) -> bytes:
-    """Compute the seal of a seat's request; `rest` has the request's own numbers (`sealed`)."""
+    """Compute the seal of a seat's request.
+
+    Args:
+        secret: the session's secret.
+        key_expression: key expression of the request.
+        session: number of the session.
+        seq: sequence number of the request.
+        *rest: the request's own numbers (`sealed`).
+    """
     numbers = (str(int(number)) for number in (session, seq, *rest))
     return _mac(secret, " ".join([key_expression, *numbers]))
 

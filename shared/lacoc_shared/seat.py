@@ -1,4 +1,4 @@
-"""Seats, phases and the small numbers that frames carry."""
+"""Seats, phases, and the small numbers by which frames describe them."""
 
 from enum import IntEnum, IntFlag
 from typing import Annotated, Literal
@@ -28,12 +28,12 @@ class Phase(IntEnum):
 
     @property
     def word(self) -> str:
-        """The phase's name in the table of words, after `phase.`: "halted"."""
+        """Last part of the code of the phase's name (`phase.*`), such as "halted"."""
         return self.name.lower()
 
 
 IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
-"""Phases of a match that goes on by itself; a halt ends them."""
+"""Phases in which a match goes on by itself until it is halted."""
 
 
 class SeatFlag(IntFlag):
@@ -42,13 +42,13 @@ class SeatFlag(IntFlag):
     JOINED = 1
     READY = 2
     SILENT = 4
-    """Its controller has not been heard for a second, so its robot stands (rules 3)."""
+    """The seat's controller has not been heard for a second, so its robot stands (rules 3)."""
     FROZEN = 8
-    """A referee froze its robot."""
+    """A referee has frozen the seat's robot."""
 
 
 class No(IntEnum):
-    """Codes for why a seat's command was refused; `WHY_NO` has the words."""
+    """Codes of the reasons why a seat's command was refused; `WHY_NO` has their sentences."""
 
     NONE = 0
     NOT_PLAYING = 1
@@ -65,7 +65,7 @@ WHY_NO: dict[No, Phrase] = {
     No.RESTARTED: say("key.restarted"),
     No.FROZEN: say("key.frozen"),
 }
-"""Phrases that tell a contestant the reason; `count.*` has the same names."""
+"""For each reason, the sentence for the contestant; `count.*` has the same names."""
 
 RESTART_KEY = 10
 """The key number of [x] in a command; digits are 0-9."""
@@ -80,8 +80,8 @@ BEATS_PER_S = 50
 REPEATS_HZ = 10
 """How often a controller repeats its last command [Hz]."""
 FRESH_BEATS = 5 * BEATS_PER_S
-"""Greatest age [beats] of a frame that a repeated command may name as a sign of life: so long may a
-page draw nothing and its seat stay alive."""
+"""Greatest age of a frame that a repeated command may name as a sign of life [beats]. For this long
+a page may draw nothing before its seat counts as silent."""
 SILENT_AFTER_S = 1.0
-"""A sender that has sent nothing for longer than this is silent: a seat's controller for its
-court (rules 3), and a court for its clients."""
+"""A sender counts as silent when nothing came from it for longer than this [s]: a seat's controller
+for its court (rules 3), and a court for its clients."""

@@ -1,7 +1,7 @@
 """The messages of a studio on the wire (docs/protocol.md has them as tables).
 
 A studio lets robots walk, and searches for better gaits, for everybody who sends it a request. It
-remembers nothing between requests: each request has all the files that it needs.
+keeps nothing between requests: each request contains all files that are needed.
 """
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class StudioKeys:
         """Return the key expression of a request.
 
         Args:
-            what: robot, trial, coach, map, variants or cancel; `*` for all.
+            what: robot, trial, coach, map, variants or cancel; `*` means all of them.
         """
         return f"{self.root}/ask/{what}"
 
@@ -58,42 +58,44 @@ class StudioKeys:
 
 
 class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The files of a request, in the format of those of a join: text, no workbooks."""
+    """The files of a request, in the format of a join: text, no workbooks."""
 
     robot: SentFile | None = None
-    """None: the workshop's hexapod."""
+    """Robot file; None: the workshop's hexapod."""
     postures: SentFile | None = None
     locomotion: SentFile | None = None
-    """With neither file and no robot: the workshop's sample gait."""
+    """LocoTra-data file. If there is neither a gait file nor a robot file, the workshop's sample
+    gait is used."""
     sequences: tuple[tuple[int, ...], ...] | None = None
-    """For each key of level B the digits of its postures, if there is no locomotion file; None: the
-    sequences of the sample's keys."""
+    """For each key of level B the digits of its postures, for use without a locomotion file; None:
+    the sequences of the sample gait."""
 
 
 class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask what a robot file describes."""
+    """Ask for a description of the robot in a robot file."""
 
     protocol: int
     robot: SentFile | None = None
 
 
 class LegShape(msgspec.Struct, frozen=True, kw_only=True):
-    """A leg of a robot, so that a page can bend it (docs/robot-file.md)."""
+    """A leg of a robot, with all that a page needs to bend it (docs/robot-file.md)."""
 
     label: str
     """The leg's name in tables, such as "R,F"."""
     position_mm: tuple[float, float, float]
-    """The root hinge in the body frame."""
+    """Position of the root hinge in the body frame."""
     outward_deg: float
     """Direction of the leg at Root 0: 0 = right, 90 = forward, 180 = left."""
     lengths_mm: tuple[float, float, float]
-    """L0, L1 and L2, from hinge to hinge; the last one to the foot."""
+    """Lengths of the links L0, L1 and L2, from hinge to hinge; of the last one, from hinge to
+    foot."""
     range_deg: tuple[float, float]
     """Lowest and highest angle of each of the three joints."""
 
 
 class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
-    """A robot: what a page needs to draw it, and to make the columns of its table."""
+    """A robot, with all that a page needs to draw it and to make the columns of its table."""
 
     name: str
     legs: tuple[str, ...]
@@ -103,16 +105,16 @@ class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
     ranges_deg: tuple[tuple[float, float], ...]
     """Lowest and highest angle of each joint, by joint id."""
     start_deg: tuple[float, ...]
-    """Angles in which the robot is put on the floor, by joint id."""
+    """Angle of each joint, by joint id, with which the robot is put on the floor."""
     start_z_m: float
     """Height of the body's origin above the floor in that posture."""
     facts: dict[str, Any]
-    """Sizes, masses and speeds by name, with units in the names (docs/protocol.md). Where legs can
-    differ, the value is a pair: the lowest and the highest."""
+    """Sizes, masses and speeds of the robot by name, with units in the names (docs/protocol.md). If
+    legs can differ in a value, it is a pair: the lowest and the highest."""
     limits: dict[str, tuple[float | None, float | None]]
-    """Lowest and highest value that the rules allow, for facts of the same name."""
+    """Lowest and highest value that the rules allow, for the facts of the same names."""
     sheet: Sheet
-    """A sheet with the robot in its only seat, for drawing."""
+    """A sheet with the robot in its only seat, as it is needed for drawing."""
     scene: Scene
 
 
@@ -122,16 +124,16 @@ class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     protocol: int
     files: GaitFiles
     keys: str = ""
-    """Keys in the form of `lacoc trial --keys`; "": the key for forward."""
+    """The keys to press, in the form of `lacoc trial --keys`; "": the key for forward."""
     seconds: float | None = None
-    """How long the last key is pressed [s]; None: whole cycles."""
+    """For how long the last key is pressed [s]; None: for a number of whole cycles."""
 
 
 class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
-    """The place of a cell in a key's sequence."""
+    """The place of a number in a key's sequence."""
 
     posture: int
-    """Index in the sequence."""
+    """Index of the posture in the sequence."""
     joint: int
     """Joint id."""
 
@@ -140,15 +142,18 @@ class Sentence(msgspec.Struct, frozen=True, kw_only=True):
     """One sentence that explains a walk."""
 
     said: Phrase
-    """The sentence; its code is `explain.*`."""
+    """The sentence (`explain.*`)."""
     cell: CellPlace | None = None
-    """Cell that the sentence is about; None: it is about no cell."""
+    """The cell that the sentence is about; None: it is not about one cell."""
     leg: int = -1
-    """Index of the leg that the sentence is about; -1: the whole robot."""
+    """Index of the leg that the sentence is about; -1: it is about the whole robot."""
 
 
 class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The measurements of a trial of `ticks` ticks; arrays are little-endian, tick by tick."""
+    """The measurements of a trial of `ticks` ticks.
+
+    Arrays are little-endian, with one entry for each tick.
+    """
 
     level: int
     key: int
@@ -157,13 +162,13 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
     """Figures of the walk, by the names in docs/studio.md 2."""
     explained: tuple[Sentence, ...]
     notes: tuple[Phrase, ...] = ()
-    """Remarks on the files, and for a reader of the figures."""
+    """Remarks on the files and on the figures."""
     fault: Phrase | None = None
-    """Why physics stopped before the end; None: it did not."""
+    """Why physics stopped before the end of the trial; None: it did not stop."""
     ticks: int
     first: int
     end: int
-    """The figures are for the ticks from `first` up to, but without, `end`."""
+    """The figures are computed from the ticks from `first` up to, but not including, `end`."""
     starts: tuple[int, ...]
     """Ticks in which a cycle of the key's sequence begins."""
     posture: bytes
@@ -185,26 +190,27 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
     tip_m: bytes
     """float32 (ticks, legs): height of each foot's lowest point above the floor."""
     digest: bytes
-    """State hash after the last tick, as in the frames of a match."""
+    """Hash chain over the states of physics up to the last tick, as in the frames of a match."""
 
 
 class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask which numbers of a key matter, and for better numbers."""
+    """Ask which numbers of a key matter most, and for better numbers."""
 
     protocol: int
     job: str
-    """Name that the asker chooses for the search: a-z, 0-9 and hyphens. Its progress and a cancel
-    have this name too."""
+    """Name that the asker chooses for the search: a-z, 0-9 and hyphens. Reports on the search and a
+    `CancelRequest` use it."""
     files: GaitFiles
     key: int | None = None
-    """Key of level B to change; None: the sample's key for the goal."""
+    """Key of level B that is changed; None: the key of the sample gait for this goal."""
     goal: str = "forward"
-    """forward, right or left."""
+    """What the robot should do: forward, right or left."""
     size: str | None = None
-    """How much may change: cell, three or table; None: only say which numbers matter."""
+    """How much may be changed: cell, three or table; None: nothing, the reply only says which
+    numbers matter."""
     seconds: float = 30.0
-    """How long to search [s], from 0 to 120. The time to rank the numbers before the search, and to
-    undo changes after it, does not count."""
+    """How long to search [s], from 0 to 120, without the time to rank the numbers before the search
+    and to undo changes after it."""
     seed: int = 0
     """Seed of the search's random numbers."""
 
@@ -214,37 +220,39 @@ class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
     protocol: int
     job: str
-    """As in `CoachRequest`."""
+    """Name of the search; see `CoachRequest`."""
     files: GaitFiles
     key: int | None = None
-    """Key of level B; None: the one for forward."""
+    """Key of level B; None: the key for forward."""
     seconds: float = 30.0
-    """How long to search: from 0 to 120."""
+    """How long to search [s], from 0 to 120."""
     seed: int = 0
 
 
 class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for six gaits that look different, bred from one table or from two."""
+    """Ask for six gaits that look different, made from one table or from two."""
 
     protocol: int
     job: str
-    """As in `CoachRequest`."""
+    """Name of the search; see `CoachRequest`."""
     files: GaitFiles
     key: int | None = None
-    """Key of level B; None: the one for forward."""
+    """Key of level B; None: the key for forward."""
     keep: tuple[tuple[int, ...], ...] = ()
-    """`table` of one or two gaits to breed from; empty: from the table of `files`."""
+    """Tables (`OtherGait.table`) of one or two gaits from which the new ones are made; empty: they
+    are made from the table in `files`."""
     before: tuple[tuple[int, ...], ...] = ()
-    """`table` of gaits that were shown before: new ones differ from them."""
+    """Tables of gaits that were shown before: the new gaits must look different."""
     round: int = 0
-    """How many rounds were before; later ones change less."""
+    """How many rounds of six gaits there were before; later rounds change less."""
     seed: int = 0
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early: the reply is `Done`, and the search's own reply has the best so far.
+    """End a search early. The reply to this request is `Done`.
 
-    The reply to a search that still waits is a refusal.
+    The request that began the search is then answered with the best result so far; if the search
+    still waits, it is refused.
     """
 
     protocol: int
@@ -255,18 +263,19 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
     """The progress of a search; a studio sends it several times a second."""
 
     stage: str
-    """waiting (until earlier searches end), repair, matters, search, undo, map or variants."""
+    """What the studio is doing: waiting (until earlier searches end), repair, matters, search,
+    undo, map or variants."""
     done: float
-    """Share of the stage, from 0 to 1."""
+    """Share of this stage that is done, from 0 to 1."""
     trials: int
     score: float | None = None
-    """Score of the best table so far."""
+    """Score of the best table that was found so far."""
     filled: int | None = None
-    """Cells of a map that have a gait, or variants that walk, so far."""
+    """How many cells of a map have a gait so far, or how many variants walk."""
 
 
 class Weight(msgspec.Struct, frozen=True, kw_only=True):
-    """How a change of one number changes the score."""
+    """How a change of one number would change the score."""
 
     cell: CellPlace
     up: float
@@ -284,31 +293,33 @@ class CellChange(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RepairTold(msgspec.Struct, frozen=True, kw_only=True):
-    """A mistake that the coach repaired before it searched."""
+    """A mistake in the gait that the coach repaired before it searched."""
 
     said: Phrase
-    """What was wrong; its code is `explain.*`."""
+    """The mistake, as a sentence (`explain.*`)."""
     cell: CellPlace
-    """A cell that was wrong."""
+    """One of the cells that were wrong."""
     before: float
     after: float
-    """The figure of the goal: forward speed [mm/s], or turning to the goal's side [deg/s]."""
+    """Figure of the goal after the repair: forward speed [mm/s], or speed of turning to the goal's
+    side [deg/s]."""
 
 
 class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The result of a search."""
+    """The result of a search of the coach."""
 
     key: int
-    """Key of level B that the search changed."""
+    """Key of level B that was changed."""
     matters: tuple[Weight, ...]
-    """All numbers of the key, those that matter most first."""
+    """All numbers of the key; those that change the score most come first."""
     changes: tuple[CellChange, ...]
     before: dict[str, Any]
     """Figures of the student's own gait, by the names in docs/studio.md 2."""
     after: dict[str, Any]
     """Figures of the best gait that was found."""
     repairs: tuple[RepairTold, ...] = ()
-    """Mistakes that were repaired, in this order. Their changes are among `changes`."""
+    """Mistakes that were repaired, in the order of the repairs. The changed numbers are in
+    `changes` too."""
     worse: tuple[str, ...] = ()
     """Names of the shown figures that became worse (docs/studio.md 4)."""
     score_before: float
@@ -318,33 +329,33 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GaitDifference(msgspec.Struct, frozen=True, kw_only=True):
-    """A direction in which a gait looks different from the gait in the request."""
+    """A visible difference between a gait and the gait of the request."""
 
     way: str
-    """height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""
+    """What differs: height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""
     steps: float
-    """How much: 1 can be seen; negative: the other way."""
+    """How much it differs: 1 is a difference that can be seen; negative: in the other direction."""
 
 
 class OtherGait(msgspec.Struct, frozen=True, kw_only=True):
-    """A gait that was found."""
+    """A gait that the coach found."""
 
     table: tuple[int, ...]
-    """All angles [deg], posture by posture in order of first use: 3 * legs each."""
+    """All angles [deg]: posture by posture in the order of first use, with 3 * legs angles each."""
     changes: tuple[CellChange, ...]
-    """What differs from the table of the request's files."""
+    """The numbers that differ from the table in the request's files."""
     differences: tuple[GaitDifference, ...]
-    """How it looks different from that table, what is easiest to see first."""
+    """The visible differences from the gait of that table; the clearest comes first."""
     figures: dict[str, Any]
-    """Over three cycles."""
+    """Figures of the gait, measured over three cycles."""
 
 
 class MapCell(msgspec.Struct, frozen=True, kw_only=True):
-    """A cell of a map, with the best gait that was found for it."""
+    """A cell of a map, and the best gait that was found for it."""
 
     speed: int
     arousal: int
-    """Index along each axis."""
+    """Index of the cell along the axis of arousal."""
     gait: OtherGait
 
 
@@ -353,24 +364,26 @@ class MapReply(msgspec.Struct, frozen=True, kw_only=True):
 
     key: int
     speeds_mm_s: tuple[float, ...]
-    """Lower end of each cell along the axis of forward speed; the last has no upper end."""
+    """Lower end of each cell along the axis of forward speed; the last cell has no upper end."""
     arousals_mm_s: tuple[float, ...]
-    """The same for arousal: height of the feet over the period."""
+    """Lower end of each cell along the axis of arousal: height of the feet divided by the
+    period."""
     cells: tuple[MapCell, ...]
     """The cells that have a gait, by speed and then by arousal."""
     own: tuple[int, int] | None
-    """Speed and arousal of the own gait, as indices; None if it goes backward or has no cycle."""
+    """The cell of the student's own gait, as indices of speed and arousal; None: this gait goes
+    backward or has no cycle."""
     before: dict[str, Any]
-    """Figures of the own gait."""
+    """Figures of the student's own gait."""
     trials: int
     cancelled: bool = False
 
 
 class VariantsReply(msgspec.Struct, frozen=True, kw_only=True):
-    """Gaits to choose from."""
+    """The gaits that the coach offers for a choice."""
 
     key: int
     variants: tuple[OtherGait, ...]
-    """Six; fewer if the search was cancelled, or if too few walked upright."""
+    """Six gaits; fewer if the search was cancelled, or if too few walked upright."""
     trials: int
     cancelled: bool = False

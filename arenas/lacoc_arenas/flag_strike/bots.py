@@ -1,4 +1,4 @@
-"""Bots for Flag-Strike: `straight`, `nearest` (to the nearest flag) and `planner`."""
+"""Bots for Flag-Strike: `straight`, `nearest` (to the nearest flag) and `planner` (of routes)."""
 
 import math
 from abc import ABC, abstractmethod
@@ -22,14 +22,14 @@ _DEPTH, _BEAM = 4, 14
 _PATIENCE_S = 30.0
 """A point gained this much later is worth 1 / e of a point now, because plans often fail."""
 _RIVAL = 0.8
-"""Factor on a target's worth if the other robot will be there first."""
+"""The worth of a target is multiplied by this if the other robot will be there first."""
 _DECISIVE = 100.0
 """Worth of a corner that ends the match with a win."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
 class _Hunter(ABC):
-    """A brain that walks from target to target; subclasses choose the next target."""
+    """A brain that walks from marker to marker; subclasses choose the next one."""
 
     def __init__(self, sheet: Sheet, seat: int) -> None:
         self.game = make(sheet.settings["game"])
@@ -57,12 +57,12 @@ class _Hunter(ABC):
 
     @abstractmethod
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """Return the marker to go to, or `_NOWHERE`.
+        """Return the index of the marker to go to, or `_NOWHERE` if none is worth it.
 
         Args:
             board: the state of each marker.
             scores: points of each seat.
-            poses: where all robots are.
+            poses: the poses of all robots, by seat.
         """
 
 

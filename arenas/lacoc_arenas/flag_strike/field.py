@@ -1,7 +1,7 @@
-"""The field of Flag-Strike: corners, flags that stand or lie, and poles to be touched.
+"""The field of Flag-Strike: corners, flags that stand or lie, and poles that show a touch.
 
-A robot touches the pole "probe:NAME": a cylinder without contacts, whose distance to the robots is
-measured after each tick (rules 6).
+The pole of a flag is "probe:NAME": a cylinder without contacts. Its distance to the robots is
+measured after each tick; a robot that reaches it touches the flag (rules 6).
 """
 
 import math
@@ -51,7 +51,7 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
 def _cloth_m(flag: Flag, height_m: float) -> tuple[float, float]:
     """Return half length and half height of the cloth [m].
 
-    It is larger for more points, so that the points show without colour.
+    The cloth is larger for a flag with more points, so that one sees the points without the colour.
     """
     size = 0.16 + 0.03 * min(flag.colour.points, 6)
     return size * height_m, 0.6 * size * height_m
@@ -66,7 +66,7 @@ def _probe(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) ->
 
 
 def _standing(spec: mujoco.MjSpec, flag: Flag, radius_m: float, height_m: float) -> None:
-    """Add the pole, and at its top a cloth that points counter-clockwise round the field."""
+    """Add a standing flag: its pole, and a cloth that points counter-clockwise round the field."""
     along = _along(flag)
     length_m, depth_m = _cloth_m(flag, height_m)
     pole = field.marker_geom(flag.name, NEUTRAL, "pole")
@@ -123,7 +123,7 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 def _along(flag: Flag) -> float:
     """Return the direction in which a flag's cloth points and its pole falls [rad].
 
-    It is counter-clockwise round the field. So the field is the same when it is turned by 180
+    It is counter-clockwise round the field. So the field looks the same when it is turned by 180
     degrees.
     """
     return math.atan2(flag.y_m, flag.x_m) + math.pi / 2

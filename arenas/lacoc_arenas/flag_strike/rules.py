@@ -55,7 +55,7 @@ class State(msgspec.Struct, frozen=True):
 
 
 class FlagStrike:
-    """The rules for one choice of settings."""
+    """The rules of Flag-Strike with given settings."""
 
     state_type = State
 
@@ -98,7 +98,7 @@ class FlagStrike:
         self._radius2_m2 = settings.corner_radius_m**2
 
     def start(self) -> State:
-        """Return the first state: all neutral, flags standing, robots on their start places."""
+        """Return the first state: corners neutral, flags standing, robots on their start places."""
         left, right = (self.corner_at(places[0].x_m, places[0].y_m) for places in self.starts)
         return State((NEUTRAL,) * len(self.markers), (left, right))
 
@@ -146,7 +146,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield corner and seat of each robot that has just come into a corner and takes it."""
+        """Yield (corner, seat) for each robot that has just come into a corner and so takes it."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)
@@ -209,7 +209,10 @@ class FlagStrike:
         return left, right
 
     def over(self, state: State) -> Phrase | None:
-        """Return why the match is over: a team has all corners (workshop 5-2 rule 4); or None."""
+        """Return why the match is over: one team has all corners (workshop 5-2 rule 4).
+
+        None if it is not over.
+        """
         holder = self._holder(state)
         return None if holder is None else say("over.all-corners", seat=("left", "right")[holder])
 
@@ -230,7 +233,10 @@ class FlagStrike:
         return first - 1 if first != NEUTRAL and others == [first] * len(others) else None
 
     def gains(self, state: State, seat: int) -> Gains:
-        """Return the flags that stand, and the corners that the robot would take by walking in."""
+        """Return what would score for this robot next: standing flags, and corners of others.
+
+        A corner does not count while the robot is in it.
+        """
         own, inside = seat + 1, state.inside[seat]
         flags = [
             flag

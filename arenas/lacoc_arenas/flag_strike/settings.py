@@ -11,7 +11,7 @@ from lacoc_arenas.layout import Length, Point
 from lacoc_shared.words import Phrase, say
 
 FLAGS, COLOURS = 20, 4
-"""Numbers of flags and of their colours (workshop 5-2 rule 6)."""
+"""How many flags there must be, and how many colours (workshop 5-2 rule 6)."""
 
 Points = Annotated[int, msgspec.Meta(ge=1, le=1000)]
 
@@ -50,7 +50,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     pole_radius_m: Length
     pole_height_m: Length
     clearance_m: Annotated[float, msgspec.Meta(ge=0, le=20)]
-    """Least distance of a flag from the edge of a corner and from a start of either team [m]."""
+    """Least distance of a flag from the edge of each corner and from each start place [m]."""
     colour: tuple[FlagColour, ...]
 
     def __post_init__(self) -> None:

@@ -12,13 +12,13 @@ _LONGEST = 80
 
 
 def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
-    """Return an argument as a whole number; numpy's whole numbers are fine too.
+    """Return an argument as a Python int; numpy's whole numbers are allowed too.
 
     Args:
         name: name of the argument, for the message.
         value: what was given.
         least: smallest number that is allowed.
-        most: largest number that is allowed; None: there is none.
+        most: largest number that is allowed; None: there is no upper bound.
 
     Raises:
         UserError: if it is not a whole number, or out of these bounds.
@@ -35,15 +35,15 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 
 
 def table(name: str, value: Any, example: str) -> dict[str, Any]:
-    """Return an argument that is a dict; None is an empty one.
+    """Return an argument that must be a dict; None gives an empty dict.
 
     Args:
         name: name of the argument, for the message.
         value: what was given.
-        example: a right one, for the message.
+        example: a right value, for the message.
 
     Raises:
-        UserError: if it is something else.
+        UserError: if it is neither a dict nor None.
     """
     if value is None:
         return {}
@@ -53,7 +53,7 @@ def table(name: str, value: Any, example: str) -> dict[str, Any]:
 
 
 def short(value: Any) -> str:
-    """Return what an argument is in one short line, to quote it in a message."""
+    """Return the value of an argument as one short line, to quote it in a message."""
     if isinstance(value, np.ndarray):
         numbers = np.array2string(value, precision=3, threshold=6, edgeitems=2, separator=", ")
         text = f"array {value.shape} {numbers}"

@@ -1,6 +1,7 @@
 """A learned policy as layers of numbers, and as a bot file.
 
-A bot file holds the layers as text. It needs neither MuJoCo nor the library that trained it.
+A bot file holds the layers as text. To play, it needs neither MuJoCo nor the library that trained
+the policy.
 """
 
 import base64
@@ -45,9 +46,9 @@ class Layer(NamedTuple):
     """One layer: its output is `weights @ input + biases`."""
 
     weights: npt.NDArray[np.float64]
-    """(outputs, inputs)."""
+    """Shape (outputs, inputs)."""
     biases: npt.NDArray[np.float64]
-    """(outputs,)."""
+    """Shape (outputs,)."""
 
     def __repr__(self) -> str:
         return f"Layer(weights={np.shape(self.weights)}, biases={np.shape(self.biases)})"
@@ -66,12 +67,12 @@ class Network:
     """A policy that presses the key of its largest output.
 
     Args:
-        layers: from the input on; the first takes what `Senses` gives, the last has an output for
-            each key. After each layer but the last comes the activation.
+        layers: all layers, beginning at the input. The first takes the numbers of `Senses`; the
+            last has one output for each key.
         keys: digits of level B, and `RESTART_KEY` for [x]; each at most once.
         every_ticks: the policy chooses a key in every n-th tick, as it did with `beats` = n in an
             environment.
-        activation: what follows each layer but the last.
+        activation: the function that follows each layer but the last.
 
     Raises:
         UserError: if the layers do not fit each other or the keys, or another argument is wrong.
@@ -109,7 +110,7 @@ class Network:
         return int(self.layers[0].weights.shape[1])
 
     def choose(self, numbers: Numbers) -> int:
-        """Return the index in `keys` of the key to press; environments take it as an action."""
+        """Return the index in `keys` of the key to press; in an environment it is the action."""
         values = numbers.astype(np.float64)
         for index, layer in enumerate(self.layers):
             if index:
@@ -140,7 +141,7 @@ class Network:
 
 
 def _digits(keys: Sequence[int]) -> tuple[int, ...]:
-    """Return keys as digits; there must be one, and none twice."""
+    """Return keys as digits, after a check that there is at least one and none comes twice."""
     try:
         digits = tuple(whole("keys", key, 0, RESTART_KEY) for key in keys)
     except (TypeError, UserError):
@@ -151,9 +152,10 @@ def _digits(keys: Sequence[int]) -> tuple[int, ...]:
 
 
 def press(frame: Frame, seat: int, digit: int) -> Key | None:
-    """Return the key to press so that a digit becomes the present one.
+    """Return the key that makes a digit the present one.
 
-    None if it is the present one already (never for [x]), or if the seat's keys are locked.
+    None if the digit is the present one already (never for [x]), or if the seat's keys are refused
+    now.
     """
     now = frame.seats[seat]
     if now.locked_ticks or (digit == now.key and now.level == Level.LOCOMOTION):
@@ -162,7 +164,7 @@ def press(frame: Frame, seat: int, digit: int) -> Key | None:
 
 
 def export(network: Network) -> str:
-    """Return a bot file's text."""
+    """Return the text of a bot file that plays this policy."""
     parts = [part for layer in network.layers for part in layer]
     saved = _SavedNetwork(
         network.keys,
@@ -177,7 +179,7 @@ def export(network: Network) -> str:
 
 
 def read(text: str) -> Network:
-    """Read the policy of a bot file.
+    """Read the policy from the text of a bot file.
 
     Raises:
         UserError: if the text is damaged, or its layers do not fit.

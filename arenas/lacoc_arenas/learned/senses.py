@@ -1,7 +1,7 @@
 """What a learned policy sees of a frame: numbers with units, from its own seat's side.
 
 A robot in the right seat sees the field turned by 180 degrees, and its own robot first. So one
-policy plays both seats. A field that is not the same after this turn is not turned.
+policy can play both seats. If the field is not the same after this turn, nothing is turned.
 
 Environments and exported bots use the same functions. So a policy sees the same numbers, bit for
 bit, while it learns and while it plays (docs/environments.md).
@@ -31,16 +31,18 @@ CLOCK = ("left_s", "played_s")
 """Names of the numbers of the clock: time left to play (0 without a limit), and time played."""
 
 _POSE = 7
-"""Numbers of a robot in `Frame.poses` before its joint angles: position and quaternion."""
+"""How many numbers a robot has in `Frame.poses` before its joint angles: position and
+quaternion."""
 _FLOAT = np.dtype("<f4")
 
 
 class Senses:
     """Reads the frames of one match as numbers.
 
-    The numbers are, in this order: for each robot, one's own first, `BODY` and the angle of each
-    joint [rad] by joint id; for each seat, one's own first, `SEAT`; `CLOCK`; for each marker 1 if
-    it is one's own, -1 if it is another's, 0 if it is neutral and 0.5 if it fell for nobody.
+    The numbers are, in this order: for each robot, its own first, `BODY` and the angle of each
+    joint [rad] by joint id; for each seat, its own first, `SEAT`; then `CLOCK`; then for each
+    marker 1 if the own seat has it, -1 if another seat has it, 0 if it is neutral and 0.5 if it is
+    a flag that fell for nobody.
 
     Args:
         sheet: the sheet of the match, with all robots.
@@ -55,7 +57,7 @@ class Senses:
         turned = partners(sheet.markers) if self._seats == 2 else None
         self._turned = turned
         self.names = tuple(self._names(sheet))
-        """What each number is; the seats are "own" and "other"."""
+        """Name of each number; in the names the seats are "own" and "other"."""
         self.size = len(self.names)
         angles = [f"{_FLOAT.itemsize * joints}s" for joints in self._joints]
         self._unpack = Struct("<" + "".join(f"{_POSE}f{size}" for size in angles)).unpack
@@ -95,7 +97,7 @@ class Senses:
         return numbers
 
     def _read(self, frame: Frame) -> tuple[Any, ...]:
-        """Return the numbers of a frame: by seat bodies and commands, and the clock."""
+        """Read the numbers of a frame: bodies and commands by seat, and the clock."""
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
         poses = self._unpack(frame.poses)
@@ -133,10 +135,10 @@ class Senses:
 
 
 def partners(markers: Sequence[MarkerInfo]) -> tuple[int, ...] | None:
-    """Return each marker's partner: it is in the marker's place if the field turns by 180 degrees.
+    """Return each marker's partner: the marker whose place it takes when the field is turned.
 
-    Partners have the same kind and the same points. None if a marker has no partner: then the field
-    is not symmetric.
+    The turn is by 180 degrees. Partners have the same kind and the same points. The result is None
+    if a marker has no partner: then the field is not symmetric.
     """
     places = {_place(m, 1): index for index, m in enumerate(markers)}
     found = [places.get(_place(m, -1)) for m in markers]
@@ -158,7 +160,7 @@ def _value(state: int, seat: int) -> float:
 def _body(
     x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: float, angles: bytes
 ) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """Return the numbers of a robot, as it is and after a turn by 180 degrees."""
+    """Return the numbers of a robot twice: as it is, and with the field turned by 180 degrees."""
     ahead_x, ahead_y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
     up = 1 - 2 * (qx * qx + qy * qy)
     return (x, y, z, ahead_x, ahead_y, up, angles), (-x, -y, z, -ahead_x, -ahead_y, up, angles)

@@ -1,1 +1,1 @@
-"""Robot-Othello (workshop 5-1, rules 5): walk over discs and they take your colour."""
+"""Robot-Othello (workshop 5-1, rules 5): discs take the colour of a robot that walks over them."""

@@ -1,4 +1,4 @@
-"""Bots for Robot-Othello: `straight`, `nearest` (to the nearest disc) and `planner`."""
+"""Bots for Robot-Othello: `straight`, `nearest` (to the nearest disc) and `planner` (of routes)."""
 
 import math
 from abc import ABC, abstractmethod
@@ -18,7 +18,8 @@ _DEPTH, _BEAM = 7, 20
 _PATIENCE_S = 25.0
 """A disc gained this much later is worth 1 / e of a disc now, because plans often fail."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0
-"""A disc this near to the other robot is blocked, and going there costs this much more time."""
+"""If the other robot is this near to a disc, the disc is blocked, and going there is taken to need
+this much more time."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
@@ -69,10 +70,13 @@ class _Walker(ABC):
 
 
 class NearestDisc(_Walker):
-    """Goes to the nearest disc that it can flip, or else to an own disc beside such a disc."""
+    """Goes to the nearest disc that it can flip.
+
+    If there is none, to an own disc beside such a disc.
+    """
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """Return the nearest useful cell, if possible one that is not blocked."""
+        """Return the nearest cell worth going to; a cell that is not blocked comes first."""
         own, pose = self.seat + 1, poses[self.seat]
         flips = [n for n in self.game.neighbours[last] if cells[n] != own == cells[last]]
         starts = [

@@ -4,7 +4,7 @@ Column 0 has the smallest x, row 0 the smallest y; a disc is named "c2r3" by col
 index is 6 * row + column. A robot's *last cell* is the disc it entered most recently; walking off a
 disc does not change it.
 
-Claims that a referee struck out (rules 4.1): the disc and its runs keep their colours. The disc
+If a referee strikes out a claim (rules 4.1), the disc and its runs keep their colours. The disc
 still becomes the robot's last cell, because the robot has walked there.
 
 All flips of one tick happen at the same time. Their events are listed in the order of the discs'
@@ -77,7 +77,7 @@ class State(msgspec.Struct, frozen=True):
 
 
 class Othello:
-    """The rules for one choice of settings."""
+    """The rules of Robot-Othello with given settings."""
 
     state_type = State
 
@@ -115,9 +115,9 @@ class Othello:
     def cell_at(self, x_m: float, y_m: float) -> int:
         """Return the disc that a point lies on, or `NO_CELL`.
 
-        If discs touch (the pitch is twice the radius), the point between two belongs to the
-        outer one, and a point on the field's middle line to neither. So the board is the same
-        when the field is turned by 180 degrees.
+        If discs touch (the pitch is twice the radius), a point between two discs counts for the
+        outer one, and a point on the field's middle line for neither. So the board is the same when
+        the field is turned by 180 degrees.
         """
         ax_m, ay_m = abs(x_m), abs(y_m)
         if not (0.0 < ax_m < self._half_m and 0.0 < ay_m < self._half_m):
@@ -232,7 +232,10 @@ class Othello:
         return state.cells.count(LEFT), state.cells.count(RIGHT)
 
     def over(self, state: State) -> Phrase | None:
-        """Return why the match is over: a team has no disc left (rules 5); else None."""
+        """Return why the match is over: a team has no disc left (rules 5).
+
+        None if it is not over.
+        """
         for colour, seat in ((LEFT, "left"), (RIGHT, "right")):
             if colour not in state.cells:
                 return say("over.no-disc", seat=seat)
@@ -243,7 +246,7 @@ class Othello:
         return leader(scores)
 
     def gains(self, state: State, seat: int) -> Gains:
-        """Return the discs that flip if the robot walks onto them from its last cell."""
+        """Return the discs beside the robot's last cell that would score if it walked onto them."""
         last = state.last[seat]
         if last == NO_CELL:
             return Gains()
@@ -278,7 +281,10 @@ def make(settings: dict[str, Any]) -> Othello:
 
 
 def _rays(cell: int) -> tuple[tuple[int, ...], ...]:
-    """Return the discs right, left, above and below a disc, the nearest first; no empty rays."""
+    """Return the discs on each side (right, left, above, below) of a disc, the nearest first.
+
+    A side without discs is left out.
+    """
     row, column = divmod(cell, SIDE)
     rays = (
         tuple(SIDE * row + c for c in range(column + 1, SIDE)),

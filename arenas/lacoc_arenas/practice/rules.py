@@ -30,7 +30,7 @@ class State(msgspec.Struct, frozen=True):
 
 
 class Practice:
-    """The rules for one choice of settings."""
+    """The rules of practice with given settings."""
 
     rule = say("rule.practice")
     state_type = State
@@ -41,7 +41,7 @@ class Practice:
         self.starts = ((Place(*settings.start, math.radians(settings.heading_deg)),),)
 
     def start(self) -> State:
-        """Return the only state."""
+        """Return the only state that there is."""
         return State()
 
     def step(

@@ -1,4 +1,4 @@
-"""`lacoc bot`: seat a bot or a ghost."""
+"""`lacoc bot`: let a bot or a ghost hold a seat."""
 
 import time
 from collections.abc import Callable
@@ -28,9 +28,8 @@ from lacoc_shared.words import Phrase, say
 app = typer.Typer()
 
 _GONE_S = 120.0
-"""A bot ends when its court has been silent for this long [s]; such a court does not come back by
-itself.
-"""
+"""A bot ends when its court has been silent for this long [s]: such a court is not likely to come
+back by itself."""
 _NAME_MAX = 24
 
 
@@ -123,7 +122,7 @@ def _sit(
     patience: Patience,
     stopping: Callable[[], bool],
 ) -> None:
-    """Play at an open seat, match after match."""
+    """Join an open seat and play there, match after match."""
     notes: list[Phrase] = []
     files, own_team = bring(notes)
     for note in notes:
@@ -158,7 +157,10 @@ def _play_match(
     arena: str | None,
     stopping: Callable[[], bool],
 ) -> bool:
-    """Play one match of a team; return whether it is over."""
+    """Play one match of a team; return whether it is over.
+
+    False: the seat was refused, the court is gone, or the bot is asked to stop.
+    """
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:
         controller = Controller(session, access.court, access.seat, access.token, there.team)
@@ -176,7 +178,7 @@ def _play_match(
 
 
 def _ground(controller: Controller, arena: str | None) -> Arena:
-    """Return the arena that has the bot, by default the arena that the court plays."""
+    """Return the arena that has the bot: the named one, else the arena that the court plays."""
     sheet = controller.view.sheet
     return arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
 
@@ -184,7 +186,10 @@ def _ground(controller: Controller, arena: str | None) -> Arena:
 def _brings(
     name: str, robot: str | None, gaits: list[Path], notes: list[Phrase]
 ) -> tuple[SeatFiles, str]:
-    """Return a bot's files and its team name; a ghost has the files of its match."""
+    """Return a bot's files and its team name.
+
+    A ghost has the files of its recorded match, unless others are given.
+    """
     if not name.startswith(brains.GHOST):
         return gather(robot, gaits, notes), text_of(Path(name).stem)
     join = brains.ghost_join(*brains.open_ghost(name))

@@ -28,12 +28,15 @@ from lacoc_shared.words import render, say
 
 
 class _ClassGroup(TyperGroup):
-    """A group of commands that runs its usual command if the first word names none."""
+    """A command group: if the first word is no subcommand, its usual subcommand is run."""
 
     usual = "open"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Put `open` before the words if the first is no command; see `click.Group.parse_args`."""
+        """Insert `open` before the words if the first is no subcommand.
+
+        See `click.Group.parse_args`.
+        """
         if args and args[0] not in self.commands and args[0] not in ctx.help_option_names:
             args = [self.usual, *args]
         return super().parse_args(ctx, args)

@@ -79,7 +79,7 @@ def design_command(
 
 @contextmanager
 def own_studio() -> Iterator[str]:
-    """Run a studio for this machine until the block ends; give its address."""
+    """Run a studio for this machine until the block ends, and yield its address."""
     with (
         Scratch("design") as folder,
         kept_child(

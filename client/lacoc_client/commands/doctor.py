@@ -25,7 +25,7 @@ from lacoc_shared.words import render, say
 app = typer.Typer()
 
 NOT_READY = 1
-"""Exit code: there is a problem."""
+"""Exit code if there is a problem."""
 
 _STYLES = {Status.OK: "green", Status.NOTE: "yellow", Status.PROBLEM: "bold red"}
 _WEB = "0.0.0.0:8080"
@@ -121,7 +121,7 @@ def _host_port(address: str) -> tuple[str, int]:
 
 
 _WIDTH = 100
-"""Width of the table where there is no terminal [characters]."""
+"""Width of the table where the output is no terminal [characters]."""
 _STATUS_WORDS = {
     Status.OK: say("status.ok"),
     Status.NOTE: say("status.note"),

@@ -10,7 +10,7 @@ from lacoc_shared.network.public import PublicAddress
 from lacoc_shared.words import say
 
 MAIN = "main"
-"""Name of a court to which nobody gave one."""
+"""Name of a court that was started without a name."""
 
 _HERE = "127.0.0.1"
 
@@ -22,14 +22,15 @@ def courts(
     token: str | None = None,
     authority: Path | None = None,
 ) -> dict[str, Access]:
-    """Find the ways to all courts of a link or to the named one, with the token of who goes there.
+    """Find the ways to all courts of a link, or to the named court, each with this user's token.
 
     Args:
         link: a link, or the address of pages.
-        court: the court's name; without it, that of the link counts.
-        connect: address of a court, without a link; several, with commas: it is at one of them.
-        token: the token, without a link.
-        authority: file with the certificate of a private authority, without a link.
+        court: the court's name; None: the court that the link names counts, if it names one.
+        connect: address of a court, used without a link; several, with commas: the court is at one
+            of them.
+        token: the token, used without a link.
+        authority: file with the certificate of a private authority, used without a link.
 
     Returns:
         An access for each court, by its name.
@@ -46,10 +47,10 @@ def courts(
 
 
 def reached(found: FoundEvent, court: str | None) -> dict[str, Access]:
-    """Return the ways to all courts of a link that was found, or to the named one.
+    """Return the ways to all courts of an event that a link led to, or to the named court only.
 
     Raises:
-        UserError: if there is no such court, or none that a command can reach.
+        UserError: if the event has no such court, or none that a command can reach.
     """
     there, name = found.courts, court or found.link.court
     if name and name not in there:
@@ -98,11 +99,13 @@ def contestant(
     token: str | None,
     authority: Path | None = None,
 ) -> Access:
-    """Find the way of a contestant or a bot to any court, which says where its seat is.
+    """Find the way of a contestant or a bot to any court of the event.
+
+    That court then says where the seat is.
 
     Args:
-        link: as in `courts`, as all others.
-        court: the court to ask.
+        link: as in `courts`.
+        court: name of the court to ask.
         connect: address of a court.
         token: the token.
         authority: file of a private authority.
@@ -116,10 +119,10 @@ def contestant(
 
 
 def with_token(access: Access) -> Access:
-    """Return an access that has a token.
+    """Return the access unchanged, after a check that it has a token.
 
     Raises:
-        UserError: if it has none.
+        UserError: if it has no token.
     """
     if not access.token:
         raise UserError(say("entrance.no-token"))

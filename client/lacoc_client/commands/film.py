@@ -151,7 +151,7 @@ def film_command(
 
 
 def _stills(out: Path, count: int) -> list[Path]:
-    """Return the paths of the stills of a film's matches."""
+    """Return the paths for the stills of a film, one for each match."""
     if count == 1:
         return [out.with_suffix(".png")]
     return [out.with_name(f"{out.stem}-{number}.png") for number in range(1, count + 1)]
@@ -160,7 +160,7 @@ def _stills(out: Path, count: int) -> list[Path]:
 def look_of(
     size: str, view: View, quality: Quality, overlay: bool, language: Language | None
 ) -> Look:
-    """Return the look of a film.
+    """Return the look of a film, from the options of the command.
 
     Raises:
         UserError: if a film can't have this size.

@@ -1,4 +1,4 @@
-"""A page for one person: a gateway on this machine only, and a browser."""
+"""Shows a page to one person: starts a gateway for this machine only, and a browser."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -45,7 +45,7 @@ def public_address(
         certificate: `options.Certificate`.
         private_key: `options.PrivateKey`.
         proxy: `options.Proxy`.
-        own: what holds for an option that is not given; None: nothing.
+        own: the values to take for options that are not given; None: there are none.
 
     Raises:
         UserError: if something is wrong.
@@ -61,13 +61,13 @@ def public_address(
 
 
 def check_pages(*, terminal: bool = True) -> None:
-    """Check that there are pages to show.
+    """Check that the pages were built, so that there is something to show.
 
     Args:
         terminal: whether the command has `--terminal` too.
 
     Raises:
-        UserError: if they are not built.
+        UserError: if the pages are not built.
     """
     if not PageFiles().built:
         raise UserError(say("pages.not-built-for-play", why=NOT_BUILT) if terminal else NOT_BUILT)

@@ -101,7 +101,9 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the given files; if no gait file is given, read and name the current folder's ones.
+    """Read the given files.
+
+    Without a gait file, read those of the current folder and name them to the user.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -121,7 +123,7 @@ def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
 def play(
     access: Access, team: str, files: SeatFiles, *, ready: bool, greeting: Text | None = None
 ) -> None:
-    """Join, and play at the terminal until the contestant leaves.
+    """Join a seat, and play there at the terminal until the contestant leaves.
 
     Args:
         access: address, seat and token.
@@ -148,13 +150,13 @@ def follow(
     *,
     ready: bool,
 ) -> None:
-    """Play at the terminal at whichever court the token's seat is.
+    """Play at the terminal, at each court to which the token's team is called.
 
     Args:
         access: the way to any court of the event, with the token.
-        any_court: whether nobody named the court.
-        name: name of a team at an open seat; "": that of the seat.
-        bring: returns the files of a team at an open seat.
+        any_court: whether any court of the event may be asked, because nobody named one.
+        name: name of the team, for an open seat; "": a name made of the seat.
+        bring: returns the files of the team, for an open seat.
         ready: say ready at once, in each match.
 
     Raises:
@@ -193,7 +195,10 @@ def _play_match(
     *,
     ready: bool,
 ) -> bool:
-    """Play one match at the terminal, or at an open seat all; return whether the team goes on."""
+    """Play one match at the terminal, or all matches at an open seat.
+
+    Return whether the team plays on.
+    """
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:
         controller = _seated(session, access, team, files, ready=ready)
@@ -218,7 +223,10 @@ def _seated(
     ready: bool,
     greeting: Text | None = None,
 ) -> Controller:
-    """Join, say what the keys do, and return the controller; arguments as in `play`."""
+    """Join a seat, tell the contestant what the keys do, and return the controller.
+
+    Arguments as in `play`.
+    """
     controller = Controller(
         session, access.court, access.seat, access.token, team, **files._asdict()
     )
@@ -232,7 +240,10 @@ def _seated(
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:
-    """Wait for the sheet that names this team; the sheet comes a moment after the join."""
+    """Wait for the sheet that has this team's robot.
+
+    It comes a moment after the answer to the join.
+    """
     deadline_s = time.monotonic() + _SHEET_S
     while time.monotonic() < deadline_s:
         controller.wait_frame(0.05)

@@ -67,7 +67,10 @@ def _greeting(files: SeatFiles) -> Text:
 
 @contextmanager
 def _court(folder: Path, recordings: Path) -> Iterator[Access]:
-    """Run a court with the practice arena, as a process that ends with the block."""
+    """Run a court with the practice arena in a process of its own, until the block ends.
+
+    Yield the way to it.
+    """
     # Fresh: a practice begins anew, even if a killed court left a match in the folder.
     words = ["serve", "--json", "--fresh", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]
     words += ["--recordings", str(recordings)]

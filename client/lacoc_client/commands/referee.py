@@ -46,10 +46,10 @@ from lacoc_shared.words import Phrase, render, say
 
 
 class _Referee(TyperGroup):
-    """Takes a link before the subcommand: `lacoc referee LINK start`."""
+    """The command group, which takes a link before the subcommand: `lacoc referee LINK start`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Keep the link for the subcommand; a link alone shows how the match stands."""
+        """Keep a link for the subcommand; after a link alone, run the subcommand `status`."""
         if args and "://" in args[0]:
             os.environ["LACOC_LINK"] = args[0]
             args = args[1:] or ["status"]
@@ -69,7 +69,7 @@ _HEALTH_S = 5.0
 """Longest wait for a court's health, which it sends twice a second."""
 _HISTORY_S = 3.0
 _QUIET_S = 0.3
-"""The list of events is complete when no more arrive for this time."""
+"""The list of events counts as complete when no more events arrive for this time [s]."""
 
 _FIELDS = {
     "seat": "The seat, such as 'left'.",
@@ -93,7 +93,7 @@ _TokenUnused = Annotated[
 
 
 _FINAL = frozenset({"abort", "declare", "official", "next"})
-"""Decisions that nothing undoes; whoever makes them is asked first."""
+"""Decisions that can't be undone; the referee is asked first whether to make them."""
 _NOBODY = frozenset({"root", "admin", "administrator", "user", "nobody"})
 """Account names that name no person; the record gets "referee" in place of them."""
 
@@ -148,7 +148,10 @@ _COMMON: dict[str, tuple[Any, Any]] = {
 
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
-    """Make the function of a decision's subcommand; its parameters are the decision's fields."""
+    """Make the function that runs a decision's subcommand.
+
+    Its parameters are the decision's fields.
+    """
     fields = {
         field.name: field
         for field in msgspec.structs.fields(kind)
@@ -186,7 +189,7 @@ def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
 
 
 def _annotation(field: FieldInfo) -> Any:
-    """Annotate a field for typer: a required one is an argument, any other an option."""
+    """Return typer's annotation of a field: an argument if it must be given, else an option."""
     help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
     if _is_argument(field):
         name = field.encode_name.removesuffix("_s").upper()
@@ -197,7 +200,10 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _is_argument(field: FieldInfo) -> bool:
-    """Return whether a field must be given; so must `gives_s`, whose default is for old records."""
+    """Return whether a field must be given.
+
+    `gives_s` must be given too: its default is only for old records.
+    """
     return field.required or field.name == "gives_s"
 
 
@@ -312,7 +318,10 @@ def outlook(
 
 
 def _marker(name: str) -> str:
-    """Return the name of a marker; a disc may be called as pictures do: C4 is c2r3."""
+    """Return the name of a marker from what the user typed.
+
+    A disc may be called as in pictures: C4 is c2r3.
+    """
     if found := re.fullmatch("([A-Z])([1-9][0-9]?)", name):
         return f"c{ord(found[1]) - ord('A')}r{int(found[2]) - 1}"
     return name
@@ -370,7 +379,10 @@ def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
 
 
 def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
-    """Ask for a score to be changed, with both scores; None: the court has not two such seats."""
+    """Return the question whether to change a score, with the scores before and after.
+
+    None: the match has not two seats, or not this seat.
+    """
     names = [seat.id for seat in sheet.seats]
     if len(names) != 2 or decision.seat not in names:
         return None
@@ -386,10 +398,10 @@ def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
 
 
 def _ask(name: str, question: Phrase) -> None:
-    """Ask whether a decision shall be made.
+    """Ask the user at the terminal whether a decision shall be made.
 
     Raises:
-        UserError: if nobody can be asked.
+        UserError: if there is no terminal to ask at.
         typer.Exit: if the answer is no.
     """
     if not sys.stdin.isatty():
@@ -436,7 +448,7 @@ def _decide_when_legal(
 
 
 def _look(view: Spectator) -> tuple[Frame, Health]:
-    """Wait for the newest frame and the health of a court.
+    """Wait until a court has sent a frame and its health, and return both.
 
     Raises:
         UserError: if the court sends no health.
@@ -450,7 +462,10 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
 
 
 def _history(view: Spectator) -> tuple[Event, ...]:
-    """Return all events so far, in order; they arrive a moment after the connection."""
+    """Return all events of the match so far, in order.
+
+    Wait for them, as they come after the connection.
+    """
     now_s = time.monotonic()
     deadline_s, quiet_since_s = now_s + _HISTORY_S, now_s
     while (now_s := time.monotonic()) < deadline_s:

@@ -14,7 +14,7 @@ app = typer.Typer()
 
 _PAGES = "http://127.0.0.1:8080"
 _MUCH = 0.05
-"""A larger share of pictures that are left out is a warning."""
+"""A report is a warning if a larger share of the pictures than this was left out."""
 
 
 @app.command(name="stream")

@@ -25,7 +25,8 @@ app = typer.Typer()
 
 _DRAW_HZ = 10.0
 _LAST_WORD_S = 2.0
-"""Longest wait for the event of a match's end after the frame that shows the end."""
+"""After the frame that shows the end of a match, wait at most this long for the event of the end
+[s]."""
 _ENDED = (Phase.OFFICIAL, Phase.VOID)
 
 
@@ -81,7 +82,7 @@ def watch_command(
 
 
 class _End:
-    """Decides when there is nothing more to see."""
+    """Decides when a command that shows a match may end."""
 
     def __init__(self, view: Spectator, forever: bool, stopping: Callable[[], bool]) -> None:
         self._view = view
@@ -103,7 +104,7 @@ class _End:
 
 
 def _print_json(view: Spectator, hz: float, end: _End) -> None:
-    """Print a line for each event, for `hz` frames a second, and for each second of silence."""
+    """Print as JSON each event, `hz` frames a second, and a line for each second without frames."""
     frame_s = silent_s = 0.0
     while True:
         frame = view.wait_frame(0.1)

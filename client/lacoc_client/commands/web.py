@@ -148,7 +148,7 @@ def web_command(
 
 
 def _again(stack: ExitStack, found: FoundEvent, court: str | None) -> Home:
-    """Return the settings of a gateway that serves the pages of a link once more."""
+    """Return the settings of a second gateway for the pages of a link, for a larger crowd."""
     event = found.event
     sheet = stack.enter_context(Scratch("mirror")) / contest_sheet.NAME
     stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
@@ -170,7 +170,14 @@ def _alone(courts: dict[str, Access]) -> Home:
 
 
 def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> Home:
-    """Return the settings of the gateway of a contest; `host` is that of its pages."""
+    """Return the settings of the gateway of a contest.
+
+    Args:
+        plan: the contest file.
+        file: its path.
+        court: name of the only court to serve; None: all courts.
+        host: the host of the gateway's pages.
+    """
     names = [plan.court(court)[0]] if court else [*plan.courts]
     return Home(
         courts={name: plan.access(name) for name in names},
@@ -185,12 +192,15 @@ def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> 
 
 
 def _told(plan: ContestFile, court: str, host: str) -> tuple[str, ...]:
-    """Return the addresses of a court for others; none if it listens to its own machine only.
+    """Return the addresses at which others reach a court.
+
+    None if only its own machine can reach it.
 
     Args:
         plan: the contest file.
         court: the court's name.
-        host: the host of the pages: whoever opens them on this machine finds its courts there, too.
+        host: the host of the pages. If it is this machine itself, whoever opens the pages can reach
+            its courts too.
     """
     entry = plan.courts[court]
     found = [entry.address(plan.own_host), entry.stand_in(plan.own_host)]

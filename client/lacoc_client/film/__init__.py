@@ -1,1 +1,1 @@
-"""Films of recorded matches: the pages' own pictures, drawn one by one, as an MP4."""
+"""Films of recorded matches: pictures of the replay's page, drawn one by one, as an MP4."""

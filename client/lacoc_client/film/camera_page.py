@@ -1,4 +1,4 @@
-"""The page /film in a Chromium of its own: it is told a beat, and gives the picture of it."""
+"""The page /film in a Chromium of its own: it is told a beat, and its picture is taken."""
 
 import base64
 import os
@@ -28,12 +28,13 @@ from lacoc_shared.words import say
 
 _STARTING = threading.Lock()
 _TEMPORARY = ("TMPDIR", "TEMP", "TMP")
-"""Variables that name the folder for temporary files, on one system or another."""
+"""Environment variables that name the folder for temporary files; each system has one of them."""
 _WAIT_S = 120.0
-"""A slow machine loads the page and compiles its shaders for many seconds."""
+"""Longest wait for the page [s]: a slow machine loads it and compiles its shaders for many
+seconds."""
 _LOOK_S = 0.02
 PACED = ("--enable-begin-frame-control", "--run-all-compositor-stages-before-draw")
-"""Options with which `chromium-headless-shell` puts a page together only when it is told to."""
+"""Options with which `chromium-headless-shell` draws a page only when it is told to."""
 # A string that the page evaluates by itself would need a weaker content security policy: the
 # protocol of the browser's developer tools does it from outside.
 _OPEN = """() => {
@@ -54,7 +55,7 @@ _SHOW_AND_HAND_OVER = """async (steps) => {
 
 
 class CameraPage:
-    """An open page; only the thread that opened it may use it.
+    """The page of a record, open in a browser; only the thread that opened it may use it.
 
     Args:
         page: an empty page.
@@ -65,16 +66,16 @@ class CameraPage:
     def __init__(self, page: Page, address: str, paced: bool) -> None:
         self._page = page
         self.shots = Shots(page, paced)
-        """Takes its pictures."""
+        """Takes pictures of the page."""
         page.goto(address, wait_until="commit")
         first, last, quality = self._opened()
         self.quality: str = quality
         """How the page draws: "low" or "high", or "map" without WebGL."""
         self.first, self.last = int(first), int(last)
-        """Where a replay of the record begins and ends, as beats."""
+        """First and last beat that a replay of the record shows."""
 
     def picture(self, steps: Sequence[Picture]) -> bytes:
-        """Go through some pictures, and return the last one as PNG.
+        """Let the page go through some pictures of the film, and return the last one as PNG.
 
         Args:
             steps: all pictures since the last call, in order: the page goes through each, so that
@@ -95,7 +96,10 @@ class CameraPage:
         return base64.b64decode(self._page.evaluate(_SOUND, wanted))
 
     def _opened(self) -> tuple[int, int, str]:
-        """Wait until the page can show the record; return its ends, and how the page draws."""
+        """Wait until the page can show the record.
+
+        Return first beat, last beat, and how the page draws.
+        """
         self._page.evaluate(_OPEN)
         end_s = time.monotonic() + _WAIT_S
         while time.monotonic() < end_s:
@@ -136,7 +140,7 @@ def window(look: Look) -> Iterator[tuple[Page, bool]]:
         The page, and whether its frames are made only when they are asked for.
 
     Raises:
-        UserError: if there is no browser, it does not start, or the block has an error of it.
+        UserError: if there is no browser, it does not start, or it fails while the block runs.
     """
     with Scratch("browser") as folder, _started(folder) as playwright:
         program = find(playwright.chromium.executable_path)
@@ -158,7 +162,7 @@ def window(look: Look) -> Iterator[tuple[Page, bool]]:
 def empty_page(browser: Browser, context: BrowserContext, look: Look) -> tuple[Page, bool]:
     """Open an empty page; return it, and whether its frames are made only when they are asked for.
 
-    Only the old headless mode of Chromium can do so; it is a program of its own now.
+    Only the old headless mode of Chromium makes frames on request; it is a separate program now.
     """
     tools = browser.new_browser_cdp_session()
     (own,) = tools.send("Target.getBrowserContexts")["browserContextIds"]
@@ -175,9 +179,9 @@ def empty_page(browser: Browser, context: BrowserContext, look: Look) -> tuple[P
 
 @contextmanager
 def _started(folder: Path) -> Iterator[Playwright]:
-    """Start Playwright with a folder of ours for temporary files.
+    """Start Playwright, with a given folder for its temporary files.
 
-    It leaves the browser's profile there if this process is killed.
+    If this process is killed, Playwright leaves the browser's profile in that folder.
     """
     with ExitStack() as stack:
         with _STARTING:  # the environment is that of all threads

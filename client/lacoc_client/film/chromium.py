@@ -10,7 +10,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 VARIABLE = "CHROMIUM"
-"""Environment variable that names the program."""
+"""Environment variable that gives the path of the browser."""
 
 FLAGS = (
     "--no-sandbox",  # the user may be root, in a container; only our own pages are loaded
@@ -22,10 +22,10 @@ FLAGS = (
     "--disable-gpu-compositing",
     "--disable-background-networking",
 )
-"""Options with which Chromium draws in software."""
+"""Options with which Chromium draws without a graphics card."""
 
 SHELL = "chromium-headless-shell"
-"""Chromium without what a window needs: pages take two thirds of the time in it."""
+"""Name of a Chromium without the code for windows: in it pages take two thirds of the time."""
 _NAMES = (
     SHELL,
     "chromium",
@@ -39,7 +39,7 @@ _WINDOWS = ("Google/Chrome/Application/chrome.exe", "Chromium/Application/chrome
 
 
 def on_path() -> str | None:
-    """Return the path of the system's Chromium or Chrome; None if there is none."""
+    """Return the path of the system's Chromium or Chrome; None if neither is installed."""
     found = (shutil.which(name) for name in (*_NAMES, *map(str, _places())))
     return next((path for path in found if path), None)
 

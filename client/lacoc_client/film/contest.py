@@ -1,4 +1,4 @@
-"""The records of a contest, in the order in which its sheet has them."""
+"""Finds the records of a contest, in the order of the contest's sheet."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
 
 _FOLDERS = ("records", "recordings", ".")
-"""Where records are: in a published folder, and beside a contest file."""
+"""Folders in which records may be: in a published folder, and beside a contest file."""
 
 
 def records(folder: Path) -> list[Path]:

@@ -17,9 +17,9 @@ from lacoc_client.film.plan import Picture
 T = TypeVar("T")
 
 SOUND_HZ = 24_000
-"""Samples a second of a film's sound: its highest tone has less than 3 kHz."""
+"""Samples a second of a film's sound; its highest tone is below 3 kHz."""
 _AHEAD = 4
-"""Pictures that a browser may be ahead of the film."""
+"""How many pictures a browser may draw ahead of the film."""
 _LOOK_S = 0.2
 
 
@@ -30,7 +30,7 @@ class Drawing:
         address: the page's address.
         look: how the film looks.
         number: which of the browsers this is, from 0.
-        of: how many browsers there are.
+        of: how many browsers draw the film.
     """
 
     def __init__(self, address: str, look: Look, number: int, of: int) -> None:
@@ -53,7 +53,7 @@ class Drawing:
         return _got(self._ends)
 
     def begin(self, pictures: Sequence[Picture], fps: int) -> None:
-        """Begin to draw; may be called once."""
+        """Begin to draw this browser's part of the pictures; may be called once."""
         self._wanted.put((pictures, fps))
 
     def sound(self) -> bytes:
@@ -73,7 +73,7 @@ class Drawing:
         return _got(self._drawn)
 
     def stop(self) -> None:
-        """End the browser."""
+        """End the browser and its thread."""
         self._stopped.set()
         self._thread.join()
 
@@ -108,7 +108,7 @@ class Drawing:
 
 
 class Crew:
-    """All browsers that draw a record; see `drawn_by`."""
+    """All browsers that draw one record; `drawn_by` makes it."""
 
     def __init__(self, drawings: Sequence[Drawing]) -> None:
         self._drawings = drawings

@@ -23,22 +23,23 @@ HIGHLIGHTS = 5
 REEL = 2
 """How many moments a reel has of each match."""
 _AFTER_BEATS = BEATS_PER_S // 2
-"""How long after its moment a still is taken."""
+"""How long after the match's largest moment its still is taken [beats]."""
 
 Progress = Callable[[int, int], None]
-"""Called with how many pictures the film has, and how many it will have after the current part."""
+"""Called with two numbers: how many pictures the film has now, and how many it will have after the
+part that is being drawn."""
 
 
 @dataclass(frozen=True)
 class FilmPart:
-    """A record in a film."""
+    """A record in a film, and what the film shows of it."""
 
     record: Record
     paths: tuple[Path, ...]
     count: int | None = None
     """How many moments are shown; None: the whole match."""
     chosen: tuple[Moment, ...] = ()
-    """The moments to choose from; empty: those in which the score changed."""
+    """The moments to choose from; empty: all moments in which the score changed."""
     opening: bool = False
     """Whether the card with the teams is shown first."""
 
@@ -62,7 +63,7 @@ class FilmPart:
     def still(self, first: int, last: int) -> int:
         """Return the beat of the match's still: just after its largest moment.
 
-        Without a moment it is the middle of play.
+        If the match has no moment, it is the middle of play.
         """
         best = moments.largest(self.moments, 1)
         if best:
@@ -112,7 +113,7 @@ def make(
 
 
 def still(one: FilmPart, out: Path, look: Look) -> None:
-    """Write the still of a record as PNG; an older file with this name gets a number.
+    """Write the still of a record as PNG; an older file of this name is kept under a numbered name.
 
     Args:
         one: the record.
@@ -146,12 +147,12 @@ def _add(
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures of the time just before a beat, and of the beat itself.
+    """Return the pictures that lead to a still: of the time just before its beat, and of the beat.
 
     During this time the automatic camera moves to where it must be at the beat.
 
     Args:
-        beat: the beat.
+        beat: the beat of the still.
         first: beat at which the replay begins; no picture is from before it.
     """
     return plan.pictures([Shot(max(first, beat - plan.RUN_UP_BEATS), beat)], BEATS_PER_S)

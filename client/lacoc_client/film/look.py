@@ -18,20 +18,20 @@ class Quality(StrEnum):
     """How finely the picture is drawn."""
 
     LOW = "low"
-    """As a page does without a graphics card."""
+    """As a page draws it without a graphics card."""
     SMOOTH = "smooth"
-    """The same with smooth edges."""
+    """As LOW, with smooth edges."""
     HIGH = "high"
-    """As a page does with a graphics card: shadows and reflections."""
+    """As a page draws it with a graphics card: with shadows and reflections."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """How a film looks: all that a picture depends on besides the match."""
+    """How a film looks: everything that decides its pictures, except the match."""
 
     view: View = View.AUTO
     overlay: bool = False
-    """Score, clock, events, names and cards."""
+    """Whether the film shows score, clock, events, names and cards."""
     language: str = "en"
     width: int = 1280
     height: int = 720

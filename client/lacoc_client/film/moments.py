@@ -14,27 +14,30 @@ from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import say
 
 TOGETHER_BEATS = BEATS_PER_S
-"""Changes of the score within this time are one moment."""
+"""Changes of the score within this time count as one moment [beats]."""
 _LARGEST_BYTES = 1 << 20
 _EXAMPLE = '{"moments": [{"beat": 1234, "swing": 0.4}]}'
 
 
 class Moment(msgspec.Struct, frozen=True):
-    """A moment of a match."""
+    """A moment of a match that is worth showing."""
 
     beat: int
     swing: float = 0.0
-    """How much it changed the match: the larger, the earlier it is chosen."""
+    """How much the moment changed the match; moments with larger swings are chosen first."""
 
 
 class _MomentsFile(msgspec.Struct):
-    """A file of moments."""
+    """The form of a file of moments."""
 
     moments: list[Moment]
 
 
 def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
-    """Return the moments with the largest swings, in the order of time; of equal ones the first."""
+    """Return the `count` moments with the largest swings, in the order of time.
+
+    Earlier ones win a tie.
+    """
     ranked = sorted(moments, key=lambda moment: (-moment.swing, moment.beat))
     return sorted(ranked[:count], key=lambda moment: moment.beat)
 
@@ -42,7 +45,7 @@ def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
 def by_score(record: Record) -> list[Moment]:
     """Return the moments in which the score changed while the match was played.
 
-    What a referee changes while the match is halted is no moment. The swing of a moment is the
+    A change by a referee while the match is halted is no moment. The swing of a moment is the
     number of points by which the lead changed, or the score if there is only one seat.
 
     Raises:
@@ -84,10 +87,10 @@ def of_frames(frames: Iterable[tuple[int, Frame]]) -> list[Moment]:
 
 
 def swings(scores: Sequence[tuple[int, Sequence[int]]]) -> list[Moment]:
-    """Return the moments in which the lead grew or shrank.
+    """Return the moments in which the lead changed.
 
     Args:
-        scores: beats in rising order, each with the points by seat.
+        scores: pairs of a beat and the points by seat; beats in rising order.
     """
     found: list[tuple[int, int, int]] = []  # first beat, lead before, lead after
     before: int | None = None

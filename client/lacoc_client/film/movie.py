@@ -1,4 +1,7 @@
-"""Writes pictures into an MP4 that every browser plays; the file gets its name when it is whole."""
+"""Writes pictures into an MP4 that every browser plays.
+
+The file gets its final name when it is complete.
+"""
 
 import secrets
 from collections.abc import Iterator, Mapping
@@ -19,23 +22,24 @@ from lacoc_shared.words import say
 _CODEC = "libx264"
 _OPTIONS = {"preset": "veryfast", "crf": "20"}
 _THREADS = 4
-"""The number of threads changes the bits of a film, so it is the same on every machine."""
+"""Number of the encoder's threads. It changes the bits of a film, so it is the same on every
+machine."""
 _BT709 = 1
 _SOUND_CODEC, _SOUND_HZ = "aac", 48_000
 _PNG = b"\x89PNG"
 _SAMPLE_BYTES = 4
-"""A sample of both sides."""
+"""Bytes of a sample of both sides together."""
 
 
 class Movie:
-    """An open film; see `movie`.
+    """A film that is being written; `movie` opens it.
 
     Args:
         container: the open file.
         size: width and height of each picture [px].
         fps: pictures a second.
         sound_hz: samples a second of the sound; 0: the film is silent.
-        options: of the encoder.
+        options: options of the encoder.
     """
 
     def __init__(
@@ -64,9 +68,9 @@ class Movie:
         if sound_hz:
             self._track = container.add_stream(_SOUND_CODEC, rate=_SOUND_HZ, layout="stereo")
         self._samples = bytearray()
-        """Sound that is not in the film yet."""
+        """Sound that was added and is not written yet."""
         self._heard = 0
-        """How many samples of each side are in the film."""
+        """How many samples of each side are written."""
 
     def hear(self, samples: bytes) -> None:
         """Add the sound of the next pictures.
@@ -100,13 +104,16 @@ class Movie:
         self._sound_on()
 
     def end(self) -> None:
-        """Write what is left in the encoders."""
+        """Write the pictures and sounds that are still in the encoders."""
         self._container.mux(self._stream.encode(None))
         if self._track is not None:
             self._container.mux(self._track.encode(None))
 
     def _sound_on(self) -> None:
-        """Write the sound until the end of the newest picture; what is missing is silent."""
+        """Write the sound up to the end of the newest picture.
+
+        Where sound is missing, write silence.
+        """
         if self._track is None:
             return
         until = round(self.count * self._sound_hz / self._fps)
@@ -126,7 +133,7 @@ def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> It
     """Open a film for writing; when the block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
-    file of this name stays. When the film is whole, an older file is kept under a numbered name.
+    file of this name stays. When the film is complete, an older file is kept under a numbered name.
 
     Args:
         out: the film's path.
@@ -136,7 +143,7 @@ def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> It
         sound_hz: samples a second of its sound; 0: it is silent.
 
     Raises:
-        UserError: if it can't be written, such as on a full disk.
+        UserError: if the film can't be written, for example because the disk is full.
     """
     part = out.with_name(f".{out.name}.{secrets.token_hex(4)}.part")
     try:

@@ -7,13 +7,13 @@ from lacoc_client.film.moments import Moment
 from lacoc_shared.seat import BEATS_PER_S
 
 RUN_UP_BEATS = 4 * BEATS_PER_S
-"""How long before a moment its shot begins."""
+"""How long before a moment its shot begins [beats]."""
 AFTER_BEATS = 3 * BEATS_PER_S
-"""How long after a moment its shot ends."""
+"""How long after a moment its shot ends [beats]."""
 OPENING_BEATS = 2 * BEATS_PER_S
-"""In a reel, how long the card with the teams is shown."""
+"""How long the card with the teams is shown in a reel [beats]."""
 END_BEATS = 4 * BEATS_PER_S
-"""How long the end of the match is shown after its moments."""
+"""How long the end of the match is shown, after the moments [beats]."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +29,13 @@ class Picture:
     """One picture of a film."""
 
     beat: float
-    """Beat of the match, with its fraction."""
+    """Beat of the match; a fraction is between two beats."""
     cut: bool
-    """Whether a new shot begins."""
+    """Whether this picture begins a new shot."""
 
 
 def whole(first: int, last: int) -> list[Shot]:
-    """Return the one shot of a whole match.
+    """Return one shot that shows a whole match.
 
     Args:
         first: beat at which a replay begins.
@@ -52,10 +52,10 @@ def highlights(
     Shots that touch or overlap become one.
 
     Args:
-        moments: what to show, in any order; one outside of the match is left out.
+        moments: the moments to show, in any order; a moment outside of the match is left out.
         first: beat at which a replay begins.
         last: beat at which it ends.
-        opening: whether to show the beginning too.
+        opening: whether to show the beginning of the match too.
     """
     wanted = [
         Shot(max(first, moment.beat - RUN_UP_BEATS), min(last, moment.beat + AFTER_BEATS))

@@ -6,16 +6,17 @@ from typing import Any
 from playwright.sync_api import Error, Page
 
 _FRAMES_MOST = 10
-"""A browser may leave out the picture of a frame that it has not drawn yet."""
+"""How many frames to ask for at most: a browser may give no picture for a frame that it has not
+drawn yet."""
 PNG: dict[str, Any] = {"format": "png", "optimizeForSpeed": True}
 JPEG: dict[str, Any] = {"format": "jpeg", "quality": 95}
 
 
 class Shots:
-    """Pictures of a page; only the thread that opened it may use it.
+    """Takes pictures of one page; only the thread that opened the page may use it.
 
-    `chromium-headless-shell` puts the page together once for each picture, when it is told to.
-    Other programs also do so whenever they show a frame, which takes a quarter more time.
+    `chromium-headless-shell` draws the page once for each picture, when it is told to. Other
+    browsers also draw it whenever they show a frame, which takes a quarter more time.
 
     Args:
         page: the page.
@@ -24,11 +25,11 @@ class Shots:
 
     def __init__(self, page: Page, paced: bool) -> None:
         self.paced = paced
-        """Whether frames are made only when they are asked for."""
+        """Whether the browser makes frames only on request."""
         self._tools = page.context.new_cdp_session(page)
 
     def take(self, how: dict[str, Any]) -> bytes:
-        """Return the picture of the page.
+        """Return a picture of the page as it is now.
 
         Args:
             how: `PNG` or `JPEG`.
@@ -36,7 +37,7 @@ class Shots:
         return base64.b64decode(self._framed(how) if self.paced else self._screenshot(how))
 
     def frame(self, **wanted: Any) -> dict[str, Any]:
-        """Let the browser put the page together once."""
+        """Let the browser draw the page once, and return its answer."""
         found: dict[str, Any] = self._tools.send("HeadlessExperimental.beginFrame", wanted)
         return found
 

@@ -25,15 +25,15 @@ _SPLIT = "split"
 
 @dataclass(frozen=True)
 class FilmSite:
-    """Where the page of a record is."""
+    """A small site on this machine with the page /film and a record."""
 
     base: str
-    """Such as "http://127.0.0.1:40000"."""
+    """Address of the site, such as "http://127.0.0.1:40000"."""
     files: tuple[str, ...]
     """The parts of the record, by the names under which they are served."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the page with a look."""
+        """Return the address of the page that shows the record with a look."""
         query = [
             *(("file", name) for name in self.files),
             ("q", "high" if look.quality is Quality.HIGH else "low"),
@@ -48,10 +48,10 @@ class FilmSite:
 
 @contextmanager
 def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
-    """Serve a record until the block ends.
+    """Serve the page and a record until the block ends.
 
     Args:
-        paths: its files, in order.
+        paths: the record's files, in order.
 
     Raises:
         UserError: if the pages are not built, or a file can't be read.

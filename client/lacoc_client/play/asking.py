@@ -19,7 +19,7 @@ from lacoc_shared.words import Phrase, render, say
 T = TypeVar("T")
 
 ANSWER_S = 5.0
-"""Longest wait for an answer; a healthy court answers within a beat or two."""
+"""Longest wait for an answer [s]; a healthy court answers within a beat or two."""
 
 _COMING_BACK_S = 0.5
 _AGAIN_S = 0.05
@@ -27,11 +27,11 @@ _WAIT_AGAIN_S = 0.5
 
 
 class NoCourt(UserError):
-    """No court of that name answers."""
+    """No court of the asked name answers."""
 
 
 class NoAnswer(NoCourt):
-    """The court did not answer; it may still have done what was asked."""
+    """The court did not answer; it may still have done what it was asked to do."""
 
 
 class NotNow(UserError):
@@ -52,7 +52,7 @@ class Patience:
         self._told = ""
 
     def until(self, do: Callable[[], T]) -> T:
-        """Call `do`; while there is no court, or the court says "not now", call it again.
+        """Call `do`, and call it again as long as no court answers, or the court refuses for now.
 
         Returns:
             What `do` returns when it succeeds.
@@ -114,7 +114,7 @@ def fetch(
     """Ask a court and return its answer as bytes; see `ask`.
 
     For a moment after its first frame, a restarted court does not receive requests yet. So the
-    request is sent again, as long as no court can have received it.
+    request is sent again, as long as it is certain that no court received it.
     """
     end_s = time.monotonic() + _COMING_BACK_S
     reached: tuple[str, ...] = ()
@@ -135,7 +135,7 @@ def fetch(
 
 
 def refusal_of(payload: bytes) -> FileRefused | UserError:
-    """Make an error from a refusal.
+    """Make the error that stands for a court's refusal.
 
     Returns:
         `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted
@@ -162,7 +162,7 @@ def understand(payload: bytes, kind: type[T]) -> T:
 
 @contextmanager
 def understood() -> Iterator[None]:
-    """Turn a `BadMessage` that the block raises into a `UserError` that people understand.
+    """Turn a `BadMessage` from the block into a `UserError` with a sentence for people.
 
     Raises:
         UserError: in place of `BadMessage`.
@@ -175,7 +175,7 @@ def understood() -> Iterator[None]:
 
 
 def no_answer(session: Session, court: str) -> Phrase:
-    """Say why a court does not answer; if no court has this name, list the courts that run."""
+    """Return why a court does not answer; if no court has this name, list the courts that run."""
     courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     address = ", ".join(session.endpoints)
     if court in courts:

@@ -1,4 +1,4 @@
-"""A bot on a controller: it plays with the same messages as a person."""
+"""Plays a bot: it holds a seat with a controller and sends the same messages as a person."""
 
 import time
 
@@ -34,7 +34,7 @@ class BotPlayer:
         self._asked_s = -_ASK_AGAIN_S
 
     def see(self, frame: Frame) -> None:
-        """React to a frame: say ready, or press a key.
+        """React to a new frame: say ready, or press the key that the bot returns.
 
         Raises:
             UserError: if the seat is lost for good.
@@ -56,7 +56,7 @@ class BotPlayer:
         self._pressed = controller.press(int(key.level), key.key), key
 
     def _is_on_its_way(self, key: Key, answered_seq: int) -> bool:
-        """Return whether this key was the last one pressed, and the court has not answered yet."""
+        """Return whether this was the last key pressed and the court has not answered it yet."""
         return (
             self._pressed is not None
             and self._pressed[1] == key

@@ -1,4 +1,4 @@
-"""Holds a seat: joins, presses keys, reports refusals, and joins again after a break."""
+"""Holds a seat: joins it, presses keys, reports refusals, and joins again after a break."""
 
 import time
 from collections.abc import Callable
@@ -46,7 +46,9 @@ _Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
 _REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
-"""Greatest age of a frame that a repeat names for a player elsewhere; the rest is for the way."""
+"""If the player sees the frames elsewhere, a repeated command names only a frame of at most this
+age [beats]. The rest of the time until the court calls a frame old is left for the way to the
+court."""
 _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
@@ -56,18 +58,17 @@ class Hold(Enum):
     NOT_JOINED = "not-joined"
     HELD = "held"
     LOST = "lost"
-    """The court was restarted and has not answered yet, or can't accept the controller now; it is
-    asked again.
-    """
+    """The court was restarted and has not answered yet, or refuses for now. The controller goes on
+    asking."""
     REPLACED = "replaced"
-    """A newer session with the same token took the seat."""
+    """A newer session with the same token has taken the seat."""
     REFUSED = "refused"
-    """The court was restarted and does not accept the controller again."""
+    """The court was restarted and refuses to let this controller join again."""
     LEFT = "left"
 
     @property
     def phrase(self) -> Phrase:
-        """The sentence that describes this state; used where no more exact reason is known."""
+        """The sentence that describes this state, for cases without a more exact reason."""
         return _HOLDS[self]
 
 
@@ -82,14 +83,14 @@ _HOLDS = {
 
 
 class SeenFrame(NamedTuple):
-    """A frame that a player saw."""
+    """A frame that a player has seen."""
 
     match: int
     beat: int
 
 
 class RefusedKey(NamedTuple):
-    """A command that the match refused."""
+    """A command that the match has refused."""
 
     level: int
     key: int
@@ -111,12 +112,12 @@ class Controller:
     """Holds one seat of a court for a person, a bot or a ghost.
 
     One thread uses it. While the seat is held, that thread calls `poll` or `wait_frame` at least
-    ten times a second: they repeat the last command, which keeps the seat alive. After a restart of
-    the court they join again, with the same token and files.
+    ten times a second: they repeat the last command, so that the seat does not become silent. After
+    a restart of the court they join again, with the same token and files.
 
-    Every command names the frame that the player saw: the newest one here, or, if the player is
-    elsewhere, the newest one that was told with `saw` or `press`. Then `poll` only repeats, while
-    that frame is recent: what nobody saw is never named.
+    Every command names the newest frame that the player saw. If the player sees the frames
+    elsewhere, that is the newest frame given to `saw` or `press`. Then `poll` repeats the command
+    only while that frame is recent: a command never names a frame that the player did not see.
 
     Args:
         session: an open client session.
@@ -167,15 +168,15 @@ class Controller:
         self._joined: Joined | None = None
         self._health_seen: Health | None = None
         self._other_holder = False
-        """Whether the newest health named another session."""
+        """Whether the newest health named another session as the holder of the seat."""
         self._seq = 0
         self._requests = 0
         """Number of ready and leave requests in this session."""
         self._standing = (0, 0, 0)
-        """Sequence number, level and key of the standing command."""
+        """Sequence number, level and key of the command that is repeated now."""
         self._elsewhere = elsewhere
         self._seen: SeenFrame | None = None
-        """The newest frame that a player elsewhere saw in this session."""
+        """The newest frame that a player who sees the frames elsewhere saw in this session."""
         self._sent_s = 0.0
         self._pressed: dict[int, _PressedKey] = {}
         self._refused: list[RefusedKey] = []
@@ -185,9 +186,9 @@ class Controller:
         """
         self.hold = Hold.NOT_JOINED
         self.reason: Phrase | None = None
-        """Why the seat is not held, if there is more to say than `hold` does."""
+        """Why the seat is not held, if this is known more exactly than `hold` says."""
         self.round_trip_ms: float | None = None
-        """Time from the newest key to the frame that shows it."""
+        """Time from pressing the newest key to the frame that shows it [ms]."""
 
     @property
     def index(self) -> int:
@@ -204,7 +205,7 @@ class Controller:
         return names.index(self.seat)
 
     def join(self, timeout_s: float = 5.0) -> tuple[Phrase, ...]:
-        """Take the seat, also from an older controller with the same token.
+        """Take the seat; if an older controller with the same token has it, it loses the seat.
 
         Returns:
             Notes for the contestant.
@@ -243,7 +244,7 @@ class Controller:
         """Tell the court that the team is ready, or no longer ready.
 
         Returns:
-            A sentence of the court, if it has one.
+            A sentence from the court, if it sent one.
 
         Raises:
             UserError: if the court refuses or does not answer.
@@ -254,7 +255,7 @@ class Controller:
         """Give the seat up.
 
         Returns:
-            A sentence of the court, if it has one.
+            A sentence from the court, if it sent one.
 
         Raises:
             UserError: if the court refuses or does not answer.
@@ -266,17 +267,18 @@ class Controller:
     def try_out(
         self, keys: tuple[TriedKey, ...], first: int, until: int, drawn: bool
     ) -> Callable[[], TryOutReply]:
-        """Prepare the question how the robot would walk alone with some keys, before the match.
+        """Prepare a request: how would the robot walk alone with some keys, before the match?
 
         Args:
             keys: as in `TryOutRequest`.
-            first: likewise.
-            until: likewise.
-            drawn: likewise.
+            first: as in `TryOutRequest`.
+            until: as in `TryOutRequest`.
+            drawn: as in `TryOutRequest`.
 
         Returns:
-            A function that asks and waits for the answer. Any thread may call it, so the seat stays
-            alive meanwhile. It raises `UserError` if the court refuses or does not answer.
+            A function that sends the request and waits for the answer. Any thread may call it, so
+            the controller's thread can go on repeating the command. It raises `UserError` if the
+            court refuses or does not answer.
 
         Raises:
             UserError: if the seat is not held.
@@ -296,7 +298,7 @@ class Controller:
         return lambda: ask(self._session, self._keys, key, request, TryOutReply)
 
     def saw(self, frame: SeenFrame) -> None:
-        """Send a sign of life of a player elsewhere.
+        """Tell the court that the player still sees frames; for a player who sees them elsewhere.
 
         Args:
             frame: the frame that the player saw.
@@ -311,7 +313,7 @@ class Controller:
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
-            upon: the frame that the player saw; None: the newest that is known here.
+            upon: the frame that the player saw; None: the newest frame that arrived here.
 
         Returns:
             The command's sequence number.
@@ -331,7 +333,7 @@ class Controller:
         return self._seq
 
     def poll(self, now_s: float) -> Frame | None:
-        """Repeat the command when it is due, and take in what arrived.
+        """Repeat the command if it is time, and read the messages that arrived.
 
         Args:
             now_s: `time.monotonic()`.
@@ -355,7 +357,7 @@ class Controller:
         return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:
-        """Wait for a new frame, repeating the command meanwhile; None if none came in time.
+        """Wait for a new frame, and repeat the command meanwhile; None if no frame came in time.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -378,7 +380,7 @@ class Controller:
         return self.reason or self.hold.phrase
 
     def link(self, now_s: float) -> Phrase | None:
-        """Say what is wrong with the link; None if nothing is."""
+        """Return what is wrong with the seat or the connection; None if nothing is wrong."""
         silent_s = self.view.silent_s(now_s)
         if self.hold is not Hold.HELD:
             return self.why_not_held
@@ -397,11 +399,11 @@ class Controller:
         return ask(self._session, self._keys, key, request, Done).said
 
     def _sealed(self, what: str, make: Callable[[int, int], _Sealed]) -> tuple[str, _Sealed]:
-        """Return the key expression of a request and the request with its seal.
+        """Make a request of the seat and seal it; return its key expression and the request.
 
         Args:
-            what: the request, as in `KeySpace.request`.
-            make: makes it from the session's number and its sequence number, without a seal.
+            what: the kind of request, as in `KeySpace.request`.
+            make: makes the request without a seal, from the session's number and a sequence number.
         """
         joined = self._session_held()
         key = self._keys.request(self.seat, what)
@@ -415,9 +417,10 @@ class Controller:
         self._seen = max(self._seen or frame, frame)
 
     def _newest(self) -> SeenFrame | None:
-        """Return the frame that a repeated command names; None: none can be named now.
+        """Return the frame that a repeated command names; None: do not repeat it now.
 
-        An old frame is no sign of life for the court.
+        None if the player sees the frames elsewhere and has seen no recent one: an old frame does
+        not count as a sign of life.
         """
         frame, seen = self.view.frame, self._seen
         if not self._elsewhere:
@@ -439,7 +442,7 @@ class Controller:
         self._sent_s = time.monotonic()
 
     def _compare(self, seat: SeatFrame) -> None:
-        """Compare the pressed keys with the keys that the frame shows as applied or refused."""
+        """Compare the pressed keys with those that the frame shows as applied or refused."""
         newest = max(seat.applied_seq, seat.refused_seq)
         for seq in [seq for seq in self._pressed if seq <= newest]:
             press = self._pressed.pop(seq)
@@ -450,7 +453,7 @@ class Controller:
                 self._refused.append(RefusedKey(press.level, press.key, why))
 
     def _check_hold(self) -> None:
-        """Check in the court's health whether this controller still holds the seat.
+        """Find out from the court's health whether this controller still holds the seat.
 
         Health names the session that holds each seat. A restarted court knows no session, and a
         newer session with the same token replaces this one. A health message from before the join

@@ -13,11 +13,11 @@ _Saved = tuple[tuple[Path, int, int], ...]
 
 
 class OwnFiles:
-    """The robot and gait files that a page sends unless it has chosen others.
+    """The robot and gait files on this machine that a page sends, unless its user chose others.
 
     Args:
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
-        gaits: gait files; none: those of the folder, the newest of each kind.
+        gaits: gait files; none: the newest file of each kind in the folder.
         folder: where gait files are looked for.
 
     Raises:
@@ -40,12 +40,13 @@ class OwnFiles:
         self.changed: tuple[str, ...] = ()
         """Names of the files that the newest version changed, added or removed."""
         self.refused: FileRefused | UserError | None = None
-        """Why the newest version can't be used; `files` is then the version before it."""
+        """Why the newest version can't be used; then `files` stays at the version before it. None:
+        it can be used."""
 
     def look(self) -> bool:
-        """Read the files again if they were saved; return True if there is a new version.
+        """Read the files again if they have changed; return True if there is a new version.
 
-        A file that is still being written is left alone until the next look.
+        A file that is still being written is read at a later call.
         """
         now = self._saved()
         if now == self._read_as or now != self._seen:

@@ -15,7 +15,7 @@ from lacoc_shared.network.session import Session
 from lacoc_shared.words import Phrase
 
 _OUTLOOK_S = 30.0
-"""Longest wait for an outlook, which a court computes beside its beats."""
+"""Longest wait for an outlook [s]: a court computes it while its beats go on."""
 
 
 class RefereeClient:
@@ -41,7 +41,7 @@ class RefereeClient:
         ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
 
     def decide(self, decision: Decision, reason: Phrase | str, by: str) -> DecisionReply:
-        """Send a decision; the reply comes when the decision is on disk.
+        """Send a decision, and return the court's reply, which comes when the decision is on disk.
 
         Args:
             decision: the decision.
@@ -49,8 +49,7 @@ class RefereeClient:
             by: who decides, for the record.
 
         Raises:
-            NoAnswer: if it is unknown here whether the decision was made; the log of events shows
-                it.
+            NoAnswer: if no reply came. The decision may have been made; the log of events shows it.
             UserError: if the court refuses; the message is its reason.
         """
         name = str(type(decision).__struct_config__.tag)
@@ -62,7 +61,7 @@ class RefereeClient:
         """Ask what would happen if play went on; the match stays as it is.
 
         Args:
-            decision: what would be decided before; None: nothing.
+            decision: a decision that would be made before play goes on; None: no decision.
             seconds: how long play would go on at most [s], up to `OUTLOOK_MOST_S`.
 
         Raises:

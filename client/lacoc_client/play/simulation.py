@@ -1,4 +1,4 @@
-"""`lacoc simulate` in a process of its own, and the lines that it prints."""
+"""Runs `lacoc simulate` in a process of its own, and reads the lines that it prints."""
 
 import asyncio
 import contextlib
@@ -17,14 +17,14 @@ _LOOK_S = 0.5
 
 
 class PlayerStanding(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a player stands after some matches."""
+    """How many matches a player has won, drawn and lost so far."""
 
     name: str
     won: int
     drawn: int
     lost: int
     points: int
-    """Points of the player in all matches."""
+    """Sum of the player's points in all matches."""
 
 
 class OutputLine(msgspec.Struct, frozen=True, tag_field="kind"):
@@ -32,7 +32,7 @@ class OutputLine(msgspec.Struct, frozen=True, tag_field="kind"):
 
 
 class LeftOutLine(OutputLine, frozen=True, tag="left-out"):
-    """A player can't play."""
+    """A line: this player can't play, for this reason or because of these mistakes."""
 
     player: str
     mistakes: tuple[Mistake, ...]
@@ -40,20 +40,20 @@ class LeftOutLine(OutputLine, frozen=True, tag="left-out"):
 
 
 class BeginLine(OutputLine, frozen=True, tag="begin"):
-    """The matches begin."""
+    """A line: so many matches begin now."""
 
     matches: int
 
 
 class MatchResult(msgspec.Struct, frozen=True):
-    """What is needed of the result in a record."""
+    """The part of a record's result that is needed here."""
 
     scores: tuple[int, int]
     official: str
 
 
 class MatchLine(OutputLine, frozen=True, tag="match"):
-    """A match has ended."""
+    """A line: a match has ended."""
 
     players: tuple[str, str]
     winner: int | None
@@ -62,7 +62,7 @@ class MatchLine(OutputLine, frozen=True, tag="match"):
 
 
 class StandingsLine(OutputLine, frozen=True, tag="standings"):
-    """An output line with the standings after a match."""
+    """A line: the standings after a match."""
 
     done: int
     standings: tuple[PlayerStanding, ...]
@@ -87,7 +87,7 @@ class Simulation:
 
     @classmethod
     async def start(cls, words: Sequence[str]) -> Self:
-        """Start the command with these words after `lacoc simulate --json`.
+        """Start `lacoc simulate --json` with further words on its command line.
 
         Raises:
             OSError: if the system can't start another process.
@@ -123,7 +123,7 @@ class Simulation:
             reading.cancel()
 
     async def complaint(self) -> str | None:
-        """Wait until the command has ended; return what went wrong, or None if nothing did."""
+        """Wait until the command has ended; return the error that it printed, or None."""
         while self._process.returncode is None:
             await asyncio.sleep(_LOOK_S / 10)
         if self._process.returncode == 0:
@@ -139,7 +139,7 @@ class Simulation:
             self._process.terminate()
 
     def close(self) -> None:
-        """End the command at once."""
+        """Kill the command."""
         self._complaining.cancel()
         with contextlib.suppress(ProcessLookupError):
             self._process.kill()

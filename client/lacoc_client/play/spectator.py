@@ -1,4 +1,4 @@
-"""Watches a court: frames, all events of the match, the sheet and the scene."""
+"""Watches a court: receives frames, all events of the match, the sheet and the scene."""
 
 import time
 from collections.abc import Callable
@@ -19,18 +19,18 @@ _EVENTS_DEPTH = 4096
 _FETCH_TRIES = 3
 _STRAYS = 5
 _SHEET_S = 0.2
-"""Longest time between a frame and the sheet that follows it [s]; then the sheet is requested."""
+"""Longest time between a frame and the sheet that belongs to it [s]; after this the sheet is
+requested."""
 _OTHER_SCENE_S = 3.0
 _ANSWER_S = 2.0
-"""Time after which an unanswered request is sent again."""
+"""Time after which a request without an answer is sent again [s]."""
 
 
 class Spectator:
-    """Everything public about a court; complete at once, even for a latecomer.
+    """Everything public about a court: complete also for somebody who connects during the match.
 
-    One thread uses it. Only `poll` and `wait_frame` change the attributes. Messages that did not
-    arrive are requested and come later: neither frames nor the commands of a controller wait for
-    them.
+    One thread uses it. Only `poll` and `wait_frame` change the attributes. Messages that were lost
+    are requested and come later; frames and a controller's commands do not wait for them.
 
     Args:
         session: an open client session.
@@ -38,7 +38,7 @@ class Spectator:
         notify: called on Zenoh's thread when a frame has come; it must return at once.
 
     Raises:
-        UserError: if no such court answers, or it speaks another version of the protocol.
+        UserError: if no such court answers, or it has another version of the protocol.
     """
 
     def __init__(
@@ -59,9 +59,11 @@ class Spectator:
         self.frame: Frame | None = None
         """The newest frame."""
         self.frame_s = time.monotonic()
-        """When the newest frame arrived; before the first frame, when the wait for it began."""
+        """When the newest frame arrived [s, `time.monotonic`]; before the first frame, when the
+        wait for it began."""
         self._other_since_s: float | None = None
-        """Time since which frames have come without their sheet; None: the sheet fits them."""
+        """Since when frames have come whose sheet is not here [s]; None: the sheet fits the newest
+        frame."""
         self.health: Health | None = None
         """The newest health."""
         self._strays = 0
@@ -75,10 +77,11 @@ class Spectator:
         return tuple(self._view.log)
 
     def poll(self) -> Frame | None:
-        """Take in what arrived.
+        """Read the messages that arrived.
 
         Returns:
-            The newest frame; None if none came since the last call, or its sheet is not here yet.
+            The newest frame; None if no frame came since the last call, or its sheet is not here
+            yet.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -104,7 +107,7 @@ class Spectator:
         return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:
-        """Wait for a new frame; None if none came in time.
+        """Wait for a new frame and return it; None if no frame came in time.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -127,11 +130,11 @@ class Spectator:
         return events
 
     def silent_s(self, now_s: float) -> float:
-        """Return how long no frame has come [s]; a court sends one every 20 ms in every phase."""
+        """Return for how long no frame has come [s]; a court sends a frame every 20 ms, always."""
         return max(0.0, now_s - self.frame_s)
 
     def scene(self) -> Scene:
-        """Fetch the drawable model that belongs to the sheet.
+        """Fetch the drawable model of the match from the court.
 
         Raises:
             UserError: if no court answers, or its scene does not fit its sheet.
@@ -146,8 +149,8 @@ class Spectator:
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
         """Decode a message of the court; None if it can't be decoded.
 
-        In that case the sheet is requested, because the sheet says whether this court speaks
-        another version. A single bad message does not end the session.
+        In that case the sheet is requested, because it says whether the court has another version
+        of the protocol. A single bad message raises no error.
 
         Raises:
             UserError: if too many messages in a row can't be decoded.
@@ -174,7 +177,7 @@ class Spectator:
         self.sheet = understand(payload, Sheet)
 
     def _ask_for_what_is_missing(self, told: Health) -> None:
-        """Request messages that did not arrive, such as those lost on a slow link."""
+        """Request events and sheet if the court's health shows that they did not arrive."""
         self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
         if self._view.lacks_events:
             self._lacking_events.ask()
@@ -182,11 +185,7 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Return whether the sheet belongs to a frame; if it is long in coming, request it.
-
-        The court sends a frame a moment before its sheet, and the scene may change again, so a
-        frame without its sheet is skipped.
-        """
+        """Return whether the sheet here belongs to a frame; request the sheet if it is late."""
         self._view.see_frame(frame.scene)
         if self._view.fits:
             self._other_since_s = None
@@ -207,16 +206,16 @@ class Spectator:
         self._new_events.sort(key=lambda event: (event.match, event.number))
 
     def _take_answers(self) -> None:
-        """Take in the answers to requests."""
+        """Read the answers to requests that have come."""
         if (events := self._lacking_events.take()) is not None:
             self._read_events(events)
         if (sheet := self._lacking_sheet.take()) is not None:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Take in new events; while a list of events is requested, leave them for later.
+        """Read new events; while a list of events is requested, leave them for later.
 
-        The list is older than the new events, so it must be taken in first.
+        The list is older than the new events, so it must be read first.
         """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
@@ -224,7 +223,7 @@ class Spectator:
                 self._keep(event)
 
     def _keep(self, event: Event) -> None:
-        """Keep a new event until it is taken; drop events of matches before the previous match."""
+        """Keep a new event until `take_events`; drop events older than the previous match."""
         if self._new_events and self._new_events[-1].match != event.match:
             last = (event.match - 1, event.match)
             self._new_events = [one for one in self._new_events if one.match in last]
@@ -232,7 +231,7 @@ class Spectator:
 
 
 class _Lacking:
-    """A request for something that did not arrive; at most one is open at a time."""
+    """Requests one kind of message that did not arrive; at most one request is open at a time."""
 
     def __init__(self, session: Session, key: str) -> None:
         self._session = session
@@ -241,7 +240,7 @@ class _Lacking:
 
     @property
     def is_asked(self) -> bool:
-        """True if the answer is under way."""
+        """True while a request is open."""
         return self._question is not None
 
     def ask(self) -> None:
@@ -250,11 +249,11 @@ class _Lacking:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
     def forget(self) -> None:
-        """Forget the request: the message came by itself."""
+        """Drop the open request, because the message came by itself."""
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer when it has come, and only once; else None."""
+        """Return the answer when it has come, only once; None before and after this."""
         if self._question is None:
             return None
         try:

@@ -9,10 +9,10 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, kill, a closed window
 
 @contextmanager
 def stop_signals() -> Iterator[Callable[[], bool]]:
-    """Catch signals that ask the program to end; give a function that says whether one came.
+    """Catch the signals that ask the program to end; give a function that says if one came.
 
-    Signals are caught until the block ends, or until the first one has come. A second signal has
-    its usual effect.
+    Signals are caught until the block ends, or until the first one has come: a second signal ends
+    the program as usual.
     """
     asked: list[int] = []
     numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]

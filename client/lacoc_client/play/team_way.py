@@ -1,4 +1,4 @@
-"""The way of a token: it asks a court where its seat is, in a contest again and again."""
+"""Finds where a team plays: asks a court with the team's token, in a contest again and again."""
 
 import time
 from collections.abc import Callable
@@ -17,11 +17,12 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
 _SOON_S, _LATER_S = 0.5, 2.0
-"""Time between two questions: while the team may be called at once, and otherwise."""
+"""Time between two questions to the court [s]: the first while the team may be called at any
+moment, the second otherwise."""
 _LATER_FROM_S = 30
 _GONE_S = 5.0
 _OUT_S = 20.0
-"""How long a team that plays no more asks a court that does not answer."""
+"""For how long a team that plays no more goes on asking a court that does not answer [s]."""
 
 
 def where(session: Session, court: str, token: str) -> Whereabouts:
@@ -46,9 +47,9 @@ class TeamWay:
 
     Args:
         access: the way to any court of the event, with the token.
-        any_court: whether nobody named the court, so that whichever is at the address is asked.
+        any_court: whether nobody named a court; then any court at the address is asked.
         patience: how long to wait for the first answer.
-        tell: told what is next, as often as it changes.
+        tell: called with a sentence about what comes next for the team, whenever it changes.
         stopping: returns whether somebody asked the program to end.
 
     Raises:
@@ -71,7 +72,7 @@ class TeamWay:
         self._said: Phrase | None = None
         self._news: Phrase | None = None
         self._past = ""
-        """The call that the team has played."""
+        """Id of the call whose match the team has already played; "": none."""
         self._session = patience.until(
             lambda: open_client(access.addresses, authority=access.authority)
         )
@@ -125,7 +126,7 @@ class TeamWay:
             self._look()
 
     def played(self, call: str) -> None:
-        """Note that the match of a call is over: `next` waits for another call."""
+        """Note that the match of this call is over, so that `next` waits for another call."""
         self._past = call
         self._look()
 
@@ -135,16 +136,16 @@ class TeamWay:
         self._look()
 
     def access(self, there: Whereabouts) -> Access:
-        """Return the way to the seat to which the team is called."""
+        """Return the way to the seat to which the team was called."""
         own = self._access
         if there.address:
             own = Access(court=there.court, connect=there.address, authority=own.authority)
         return replace(own, court=there.court).of_seat(there.seat, self._access.token)
 
     def _first(self, patience: Patience) -> Whereabouts:
-        """Return the first answer.
+        """Return the court's first answer.
 
-        Where nobody set a time, an office that is being opened is waited for.
+        If the user gave no time to wait, wait as long as the office is still opening.
         """
         while True:
             try:
@@ -164,7 +165,7 @@ class TeamWay:
             raise
 
     def _court_there(self, court: str) -> str:
-        """Return the name of the court to ask: another one that is there, if nobody named it."""
+        """Return the court to ask: the given one; if nobody named it, perhaps another one there."""
         if not self._any_court:
             return court
         there = [key.split("/")[1] for key in self._session.present(EVERY_COURT)]
@@ -179,9 +180,10 @@ class TeamWay:
             self.tell_trouble(error)
 
     def tell_trouble(self, error: NotConnected | NoCourt | NotNow) -> None:
-        """Say why the team has to wait.
+        """Tell the team why it has to wait.
 
-        A court of a contest that is away is started again by its office: a team has nothing to do.
+        If a court of a contest is away, its office starts it again, so the team need not do
+        anything.
         """
         self._say(error.phrase if isinstance(error, NotNow) else say("team.court-away"))
 
@@ -205,7 +207,7 @@ class TeamWay:
 
 
 def call_is_over(view: Spectator, call: str) -> bool:
-    """Return whether the match of a call has its official end, or its court has another match."""
+    """Return whether the match of a call has ended officially, or its court has another match."""
     frame, sheet = view.frame, view.sheet
     if sheet.call != call:
         return True
@@ -213,5 +215,5 @@ def call_is_over(view: Spectator, call: str) -> bool:
 
 
 def is_gone(view: Spectator) -> bool:
-    """Return whether a court has been silent for so long that it is better to ask again."""
+    """Return whether a court has been silent so long that the team asks again where it plays."""
     return view.silent_s(time.monotonic()) > _GONE_S

@@ -1,1 +1,1 @@
-"""The pages on which people learn: a gait studio of one's own, a class, and the phases of both."""
+"""Pages for learning: designing a gait alone (/design), in a class, and the six phases of both."""

@@ -1,7 +1,7 @@
-"""Values that a C file gives to names: `#define W 0.1`, `double a = 2*W, b[2] = {1, W};`.
+"""Reads the values that a C file gives to names: `#define W 0.1`, `double a = 2*W, b[2] = {1, W};`.
 
-Only what such a file declares outside of functions is read. An expression may have numbers, names,
-brackets, + - * / and the functions of `_CALLS`. Nothing is compiled or run.
+Only declarations outside of functions are read. An expression may have numbers, names, brackets, +
+- * / and the functions of `_CALLS`. Nothing is compiled or run.
 """
 
 import math
@@ -26,7 +26,7 @@ _CALLS: Mapping[str, Callable[[float], float]] = {
     name: getattr(math, name) for name in ("sin", "cos", "tan", "sqrt", "fabs", "atan")
 }
 _DEEPEST = 40
-"""Most brackets, and most macros, within each other."""
+"""How deep brackets, and macros, may be nested."""
 _MOST_TOKENS = 100_000
 
 _CONSTANTS: dict[str, Value] = {"M_PI": math.pi, "M_PI_2": math.pi / 2, "M_PI_4": math.pi / 4}
@@ -37,17 +37,17 @@ class Unread(NamedTuple):
 
     name: str
     line: int
-    """From 1."""
+    """Line of the declaration, from 1."""
     text: str
     why: Phrase
 
 
 class CValues(NamedTuple):
-    """What was read of one or several C files."""
+    """The values that were read from one or several C files."""
 
     values: dict[str, Value]
     lines: dict[str, int]
-    """In which line each name has its value, from 1."""
+    """Number of the line, from 1, from which the value of each name comes."""
     unread: list[Unread]
 
 
@@ -58,7 +58,7 @@ class _Token(NamedTuple):
 
 
 class _CanNotRead(Exception):
-    """An expression has something that is not read here."""
+    """An expression contains something that this module does not read."""
 
     def __init__(self, why: Phrase) -> None:
         super().__init__(why.code)
@@ -82,7 +82,10 @@ def read_c(text: str) -> CValues:
 
 
 def _lines(text: str) -> Iterator[str]:
-    """Yield the lines; one that goes on after a backslash is yielded whole, then empty ones."""
+    """Yield the lines of a text; a line that continues after a backslash is joined.
+
+    After a joined line empty lines follow, so that the numbers of lines stay right.
+    """
     open_lines: list[str] = []
     for line in text.splitlines():
         open_lines.append(line.rstrip().removesuffix("\\"))
@@ -94,7 +97,7 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _blank(match: re.Match[str]) -> str:
-    """Return what stands for a comment or a text: as many lines."""
+    """Return the text that takes the place of a comment or a string: as many line ends."""
     return " " + "\n" * match[0].count("\n")
 
 
@@ -114,7 +117,7 @@ def _tokens(text: str, line: int) -> list[_Token]:
 def _expanded(
     tokens: Iterable[_Token], macros: Mapping[str, list[_Token]], within: tuple[str, ...] = ()
 ) -> Iterator[_Token]:
-    """Put the tokens of macros in the place of their names, as a compiler does."""
+    """Replace the names of macros by the macros' tokens, as a compiler does."""
     for token in tokens:
         if token.text in macros and token.text not in within and len(within) < _DEEPEST:
             yield from _expanded(macros[token.text], macros, (*within, token.text))
@@ -125,7 +128,7 @@ def _expanded(
 def _take(
     found: CValues, name: str, tokens: Sequence[_Token], macros: Mapping[str, list[_Token]]
 ) -> None:
-    """Take the value of a name, or note that it could not be read."""
+    """Compute and store the value of a name, or note that it could not be read."""
     line = tokens[0].line if tokens else 0
     try:
         whole = [*islice(_expanded(tokens, macros, (name,)), _MOST_TOKENS)]
@@ -137,7 +140,7 @@ def _take(
 
 
 class _Declarations:
-    """Walks over the declarations of a file; the bodies of functions are left out."""
+    """Goes through the declarations of a file, and skips the bodies of functions."""
 
     def __init__(
         self,
@@ -187,7 +190,7 @@ class _Declarations:
         return self._tokens[self._at].text if self._at < len(self._tokens) else ""
 
     def _skip_value(self) -> None:
-        """Go to the comma or semicolon behind a value."""
+        """Skip a value: go to the comma or semicolon behind it."""
         depth = 0
         while self._at < len(self._tokens):
             text = self._tokens[self._at].text
@@ -220,7 +223,7 @@ class _Expression:
         """Return the value of all tokens.
 
         Raises:
-            _CanNotRead: if there is something that is not read here.
+            _CanNotRead: if the expression contains something that is not read here.
         """
         value = self._list() if self._here() == "{" else self._sum()
         if self._at < len(self._tokens):

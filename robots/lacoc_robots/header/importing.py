@@ -16,14 +16,14 @@ DEFAULTS = {
     "ROBOT_LEG_L": 0.04,
     "AngMin": 1.2,
 }
-"""The workshop's own numbers, for what a file does not have."""
+"""The workshop's own numbers, used in place of values that a file does not have."""
 _NAMES = (*DEFAULTS, "RJOINT_NUM", "Start_Pos", "Robot_weight", "Joint_Angle")
 _PLACES = ("Rjoint_x", "Rjoint_y", "Rjoint_z")
 _WEIGHTS_KG = (0.125, 0.055)
 _ROOTS_DEG = (45, 0, -45, -45, 0, 45)
 _LIFT_DEG = 20.0
 _ANG_MIN_TICKS_S = 100
-"""AngMin is in degrees for each 10 ms (rules 1)."""
+"""Factor from AngMin in the C file (degrees in 10 ms) to degrees a second (rules 1)."""
 _RANGE_DEG = "[-150, 150]"
 
 
@@ -35,7 +35,7 @@ class CFile(NamedTuple):
 
 
 class Imported(NamedTuple):
-    """A robot file, and what of it is not from the C files."""
+    """A robot file made from C files, with notes on values that did not come from them."""
 
     toml: str
     notes: tuple[Phrase, ...]
@@ -44,11 +44,11 @@ class Imported(NamedTuple):
 def import_robot(sources: Sequence[CFile], name: str) -> Imported:
     """Make a robot file of the workshop's header and, if it is given, of its main file.
 
-    Where a value is missing or can't be read, the workshop's own stands in the robot file, and a
-    note says so. The file is not yet weighed in: the values may be beyond the limits.
+    If a value is missing or can't be read, the robot file gets the workshop's own value, and a note
+    says so. The file is not weighed in yet: its values may be beyond the limits.
 
     Args:
-        sources: the files; where several give a value, the last one counts.
+        sources: the C files; if several give a value, that of the last file counts.
         name: the robot's name.
     """
     values: dict[str, Value] = {}
@@ -80,9 +80,10 @@ class _HeaderRobot:
         self._values = values
         self._places = places
         self.missing: list[tuple[Sequence[str], Phrase]] = []
-        """For each value that is the workshop's: which names could have given it, and a note."""
+        """For each value that is the workshop's own: the names that could have given it in the C
+        files, and a note."""
         self.wrong: dict[str, Phrase] = {}
-        """By name: what is there, but can't be as it is."""
+        """For each name whose value is there but can't be used: a note."""
         self._w, self._d, self._h, self._radius, self._link, self._ang_min = (
             self._number(name) for name in DEFAULTS
         )
@@ -145,7 +146,11 @@ class _HeaderRobot:
         return DEFAULTS[name]
 
     def _list(self, name: str, count: int) -> tuple[float, ...] | None:
-        """Return the numbers of a list; C fills what is left out with zeros."""
+        """Return the numbers of a list; as in C, numbers that are left out are 0.
+
+        Returns:
+            None if there is no list of this name, or it can't be used.
+        """
         value = self._values.get(name)
         if value is None:
             return None
@@ -199,7 +204,7 @@ class _HeaderRobot:
         return [*((x, y, z) for y in right), *((-x, y, z) for y in reversed(right))]
 
     def _from(self, *names: str) -> str:
-        """Say where values stand, or that the workshop's own stand here."""
+        """Return a comment: where the values were found, or that they are the workshop's own."""
         places = [self._places[name] for name in names if name in self._places]
         return "; ".join(dict.fromkeys(places)) or "the workshop's own"
 

@@ -1,1 +1,1 @@
-"""The command `lacoc` and what its subcommands share."""
+"""The command `lacoc`, and the parts that its subcommands share."""

@@ -16,15 +16,15 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, current, render, say
 
 NOT_AGAIN = 75
-"""Exit code of a process that must not be started again."""
+"""A process that ends with this exit code must not be started again."""
 _OPEN_S = 60.0
 """Longest time until a process must be ready [s], also on a slow machine."""
 _CLOSE_S = 10.0
 _LOOK_S = 0.02
 _STARTS = 3
-"""How often a process that is kept is started again if it is killed before it is ready."""
+"""How often a process is started again if it is killed before it is ready; for `kept_child`."""
 _AGAIN_S = 1.0
-"""How often to check whether the process has ended and must be started again [s]."""
+"""Time between two checks whether the process has ended and must be started again [s]."""
 
 
 def command_line(words: Sequence[str]) -> list[str]:
@@ -85,17 +85,17 @@ class Child:
 
     @property
     def ended(self) -> bool:
-        """Whether the process has ended."""
+        """Whether the process has ended, for any reason."""
         return self._process.poll() is not None
 
     @property
     def was_killed(self) -> bool:
-        """Whether a signal has ended the process, which did not end by itself."""
+        """Whether a signal has ended the process."""
         return (self._process.poll() or 0) < 0
 
     @property
     def ended_for_good(self) -> bool:
-        """Whether the process has ended, and must not be started again."""
+        """Whether the process has ended with an exit code that forbids to start it again."""
         return self._process.poll() == NOT_AGAIN
 
     def show_crash(self) -> None:
@@ -117,7 +117,7 @@ class Child:
 
 @contextmanager
 def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, Any]]:
-    """Run a `lacoc` command until the block ends; give the message that it prints when ready.
+    """Run a `lacoc` command until the block ends; yield the message that it prints when ready.
 
     Args:
         words: the words of the command line after `lacoc`.
@@ -140,8 +140,8 @@ def kept_child(
 ) -> Iterator[dict[str, Any]]:
     """Run a `lacoc` command as `child` does, and start it again whenever it ends.
 
-    It is not started again after the exit code `NOT_AGAIN`, nor if it says at its first start why
-    it can't run.
+    It is not started again after the exit code `NOT_AGAIN`. If it fails at its first start, an
+    error is raised.
 
     Args:
         words: the words of the command line after `lacoc`.
@@ -185,7 +185,7 @@ def complaint(errors: str, exit_code: int | None) -> str:
 
     Args:
         errors: the text that the process wrote to standard error.
-        exit_code: exit code of the process; the error names it if there is no text.
+        exit_code: exit code of the process; it is reported if there is no text.
     """
     said = errors.strip() or f"its process ended with {exit_code}."
     return said.removeprefix(render(say("command.error"))).strip()

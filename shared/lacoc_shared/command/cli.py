@@ -1,12 +1,12 @@
 """The command `lacoc`.
 
-Subcommands are the entries of an entry-point group. Each is imported only when it is
-called; the help of ours is in `listing`. So a contestant's machine needs nothing of the
-court's, a third party adds a command by installing a package, and `lacoc --version` is
+Subcommands are the entries of an entry-point group. Each is imported only when it is called;
+`listing` has what the help says of LACOC's own. So a contestant's machine needs no package that
+only a court needs, a third party adds a command by installing a package, and `lacoc --version` is
 quick.
 
-An entry names a `typer.Typer`. If it holds a single command, it becomes that command;
-otherwise a group. Commands raise `UserError` and `FileRefused`; only this module turns
+An entry names a `typer.Typer`. With one command in it, the entry becomes that command; with
+several, a group of commands. Commands raise `UserError` and `FileRefused`; only this module turns
 them into words on the screen and an exit code.
 """
 
@@ -29,25 +29,25 @@ from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 from lacoc_shared.words import render, say
 
 WRONG_USE = 2
-"""Exit code: a mistake that the user can correct."""
+"""Exit code for a mistake that the user can correct."""
 INTERRUPTED = 130
-"""Exit code: Ctrl-C."""
+"""Exit code after Ctrl-C."""
 
 _COMPLETION = {"install_completion", "show_completion"}  # options of the outermost command only
 
 
 class _Unloaded(NamedTuple):
-    """A command that was not imported yet.
+    """An entry point whose command was not imported yet.
 
-    An entry point is wrapped in this class to be recognised. Its own class can't serve for that,
-    because another package may replace the class of all entry points.
+    This class makes such entry points recognisable. Their own class can't, because another package
+    may replace the class of all entry points.
     """
 
     entry: EntryPoint
 
 
 class _Commands(UserDict[str, Any]):
-    """Commands by name; an entry point is loaded when its command is first read."""
+    """A mapping from names to commands; a command is imported when it is first read."""
 
     def __init__(
         self, own: Mapping[str, Any], entries: Mapping[str, EntryPoint], listed: Listing
@@ -71,7 +71,7 @@ class _Commands(UserDict[str, Any]):
 
     @contextmanager
     def only_list(self) -> Iterator[None]:
-        """In the block, give what the listing says of a command and do not import it."""
+        """In the block, return commands with the help of the listing, without importing them."""
         self._only_lists = True
         try:
             yield
@@ -80,7 +80,7 @@ class _Commands(UserDict[str, Any]):
 
 
 class LazyGroup(TyperGroup):
-    """A group that finds its commands in an entry-point group; see `lazy_group`."""
+    """A group whose commands are the entries of an entry-point group; see `lazy_group`."""
 
     entry_points: ClassVar[str]
     listing: ClassVar[Listing] = {}
@@ -101,7 +101,7 @@ class LazyGroup(TyperGroup):
             super().format_help(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
-        """List what completes a word; imports only commands of other packages."""
+        """List the completions of a word; imports only commands of other packages."""
         with self.commands.only_list():
             return super().shell_complete(ctx, incomplete)
 
@@ -112,8 +112,8 @@ def lazy_group(entry_points: str, help: str, listing: Listing | None = None) -> 
     Args:
         entry_points: name of the entry-point group; each entry names a `typer.Typer`.
         help: what the group is for; lists of groups show its first line.
-        listing: what the help says of this package's commands, in order; the others follow in
-            alphabetical order.
+        listing: what the help says of LACOC's own commands, in their order; other packages'
+            commands follow in alphabetical order.
     """
     cls = type("_Group", (LazyGroup,), {"entry_points": entry_points, "listing": listing or {}})
     app = typer.Typer(
@@ -131,7 +131,7 @@ def _is_ours(entry: EntryPoint) -> bool:
 
 
 def _listed(name: str, listed: ListedCommand) -> TyperCommand:
-    """Make a command that stands for one that is not imported, in a list of commands."""
+    """Make a stand-in for a command that is not imported, for a list of commands."""
     panel = help_text.in_words(listed.panel) or None
     return TyperCommand(name, help=listed.in_words(), rich_help_panel=panel)
 
@@ -148,7 +148,7 @@ def _load(entry: EntryPoint) -> Any:
 
 
 def _prepare_help(command: Any) -> None:
-    """Translate a command's help, and join its lines: they break at the terminal's width then."""
+    """Translate a command's help, and join its lines, which then break at the terminal's width."""
     if command.help:
         paragraphs = command.help.split("\n\n")
         command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
@@ -161,7 +161,7 @@ def _prepare_help(command: Any) -> None:
 
 
 def _broken(error: Exception) -> TyperCommand:
-    """Make a command that replaces one that can't be imported; running it shows the error."""
+    """Make a stand-in for a command that can't be imported; running it shows the error."""
 
     def fail() -> None:
         raise error
@@ -176,7 +176,7 @@ def _broken(error: Exception) -> TyperCommand:
 
 
 def _missing_extra(error: Exception) -> str | None:
-    """Say how to install a missing package, such as MuJoCo; None for any other error."""
+    """Return how to install a missing package, such as MuJoCo; None for any other error."""
     module = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
     if module not in installing.EXTRA_OF:
         return None
@@ -230,7 +230,7 @@ def main(args: Sequence[str] | None = None) -> int:
         The exit code: 0 done, 2 a mistake that the user can correct, 130 Ctrl-C.
 
     Raises:
-        SystemExit: with such a code, if the command-line library ends the command.
+        SystemExit: with one of these exit codes, if the command-line library ends the command.
         Exception: any other error; it is a bug and is shown with its traceback.
     """
     words.use(language.of_process())
@@ -272,5 +272,5 @@ def main(args: Sequence[str] | None = None) -> int:
 
 
 def _no_text(error: UnicodeEncodeError) -> str:
-    """Say which file name or argument can't be sent or stored because it is not text."""
+    """Return the message that a file name or argument can't be sent or stored: it is no text."""
     return render(say("command.no-text", text=printable(text_of(error.object))))

@@ -1,17 +1,18 @@
-"""Tables as CSV that is safe to open: a spreadsheet program takes no text in them for a formula."""
+"""Writes tables as CSV that is safe to open: a spreadsheet program takes no text for a formula."""
 
 import csv
 import io
 from collections.abc import Iterable, Sequence
 
 _FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
-"""Spreadsheet programs calculate a text that begins with one of these; wide signs in Japanese."""
+"""Spreadsheet programs calculate a text that begins with one of these signs; in Japanese also with
+a wide one."""
 
 
 def csv_text(rows: Iterable[Sequence[object]]) -> bytes:
     """Return rows as CSV; a text that looks like a formula gets an apostrophe before it.
 
-    A byte order mark tells Excel that the file is UTF-8.
+    The text begins with a byte order mark, by which Excel sees that it is UTF-8.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

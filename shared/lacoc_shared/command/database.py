@@ -1,4 +1,4 @@
-"""Open, recognise and check files of SQLite, in one way for all parts that keep data in them."""
+"""Opens, recognises and checks SQLite files, in the same way for all parts that use them."""
 
 import sqlite3
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ _NO_ROOM = (
     sqlite3.SQLITE_IOERR_FSYNC,
     sqlite3.SQLITE_IOERR_SHMSIZE,
 )
-"""Errors that a full disk causes; other errors of input and output have other causes."""
+"""Error codes of SQLite that mean a full disk."""
 
 
 class Damaged(Exception):
@@ -25,14 +25,14 @@ def connect(
 ) -> sqlite3.Connection:
     """Open a database file; it is made if there is none.
 
-    What was committed is on the disk, also if the power fails.
+    A committed transaction is on the disk, even if the power fails.
 
     Args:
         path: the file.
         application: number in the file's header that marks this kind of file.
         version: version of its tables.
         tables: SQL statements that make the tables of a new file.
-        alone: True: while the file is open here, no other program can open it.
+        alone: whether to keep other programs from opening the file while it is open here.
 
     Raises:
         Damaged: if SQLite can't read the file as a database.

@@ -1,4 +1,4 @@
-"""The pages about LACOC, which are installed with it."""
+"""Finds the pages about LACOC, which are installed with it."""
 
 from pathlib import Path
 
@@ -13,10 +13,10 @@ def folder() -> Path:
 
 
 def translated(name: str, language: str) -> Path:
-    """Return a page in a language; in English, if it is not translated.
+    """Return a page in a language; if it is not translated, in English.
 
     Args:
-        name: its name, such as "rules".
+        name: name of the page, such as "rules".
         language: the language, such as "ja".
     """
     other = folder() / f"{name}.{language}.md"

@@ -1,9 +1,8 @@
 """The help of the commands in the language of the user.
 
-The source has the help in English, where typer reads it. `words/texts/help.toml` pairs each
-English text with its Japanese, and also has typer's own words, such as "Options". The table
-is not read for English. A text that is not in it, such as that of another package, stays as
-it is.
+The source has the help in English, where typer reads it. `words/texts/help.toml` is a table with
+the Japanese of each English text, also of typer's own words, such as "Options". For English the
+table is not read. A text that is not in the table, such as that of another package, stays English.
 """
 
 import tomllib
@@ -27,18 +26,18 @@ _TITLES = (
     "ABORTED_TEXT",
     "RICH_HELP",
 )
-"""Names of typer's own words in its module `rich_utils`."""
+"""Names of the variables in typer's module `rich_utils` that have typer's own words."""
 _TEXT = "_make_rich_text"
-"""Name of the function of `rich_utils` that makes a text for a table."""
+"""Name of the function in `rich_utils` that makes a text for a table."""
 _ERROR = "rich_format_error"
-"""Name of the function of `rich_utils` that shows a mistake in the use of a command."""
+"""Name of the function in `rich_utils` that shows a mistake in the use of a command."""
 _english: dict[str, Any] = {}
-"""The original values of these names of `rich_utils`; empty until they are first replaced."""
+"""The original values of these names in `rich_utils`; empty until they are first replaced."""
 
 
 @cache
 def japanese() -> Mapping[str, str]:
-    """Read the table of help: each English text with its Japanese."""
+    """Read the table of help: a mapping from each English text to its Japanese."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
     table = tomllib.loads(file.read_text(encoding="utf-8"))
     return {pair["en"]: pair["ja"] for pair in table["text"] + table["typer"]}
@@ -90,9 +89,9 @@ def translate_typer() -> None:
 
 
 def _folded(make: Callable[..., Any], **what: Any) -> Any:
-    """Call `make`, typer's function for a text, and let the lines of its text break anywhere.
+    """Call `make`, typer's function for a text, and allow line breaks at any place in its text.
 
-    Japanese has no spaces. So a table would take a line for one long word, and cut it off.
+    Japanese has no spaces. So a table would take a line for one long word, and cut off its end.
     """
     text = make(**what)
     text.overflow = "fold"
@@ -119,7 +118,7 @@ def _context(base: Any) -> Any:
 
 
 def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]) -> Any:
-    """Find the command that the first word names in a group, or say that there is none."""
+    """Find the command that the first word names in a group; report if there is no such command."""
     name = args[0]
     if not name.startswith("-") and group.get_command(ctx, name) is None:
         near = get_close_matches(name, group.list_commands(ctx))
@@ -128,7 +127,7 @@ def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]
 
 
 def _explained(show: Callable[[Any], None], error: Any) -> None:
-    """Show a mistake in the use of a command; an unknown kind of mistake stays English."""
+    """Show a mistake in the use of a command in this language; unknown mistakes stay English."""
     message = error.message
     hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
     match type(error).__name__:
@@ -144,7 +143,7 @@ def _explained(show: Callable[[Any], None], error: Any) -> None:
 
 
 def sentence(text: str, *values: str) -> str:
-    """Return a sentence of the help with values in place of each "{}"."""
+    """Return a sentence of the help in this language, with values in place of each "{}"."""
     return in_words(text).format(*values)
 
 

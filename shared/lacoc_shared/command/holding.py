@@ -1,4 +1,4 @@
-"""Locks on files: they end with the process that holds them, however it ends."""
+"""Locks files; a lock ends with the process that holds it, however the process ends."""
 
 import sys
 from typing import BinaryIO
@@ -10,7 +10,8 @@ def hold(file: BinaryIO) -> bool:
     """Lock an open file until it is closed or its process ends.
 
     Returns:
-        False if another process has locked it. True also if the file system has no locks.
+        False if another process has locked the file; else True, also if the file system has no
+        locks.
     """
     try:
         _lock(file)

@@ -1,8 +1,8 @@
-"""How to install what is missing, from where this LACOC came.
+"""Returns the command that installs missing packages, from the place where this LACOC came from.
 
-No index of packages is sure to have LACOC. Its installation tells whether it came from a folder, a
-file or a repository; there the extra can be had too. If it does not tell, or the place is gone, the
-packages of the extra are named one by one.
+LACOC may not be in an index of packages. Its installation may record that it came from a folder, a
+file or a repository; then its extras are installed from there too. If no place is recorded, or the
+place is gone, the packages of the extra are named one by one.
 """
 
 import os
@@ -27,7 +27,7 @@ EXTRA_OF = {
     "pettingzoo": "rl",
     "playwright": "film",
 }
-"""Modules that the base install leaves out -> the extra that contains each."""
+"""Mapping from each module that the base install leaves out to the extra with its package."""
 
 
 def missing(extra: str) -> bool:
@@ -38,12 +38,20 @@ def missing(extra: str) -> bool:
 
 
 def command(*extras: str) -> str:
-    """Return the command that installs extras of LACOC into this environment."""
+    """Return the command that installs extras of LACOC into this environment.
+
+    Args:
+        *extras: names of the extras.
+    """
     return of(*_wanted(distribution(_NAME), extras))
 
 
 def of(*packages: str) -> str:
-    """Return the command that installs packages, as pip names them, into this environment."""
+    """Return the command that installs packages into this environment.
+
+    Args:
+        *packages: the packages, as pip names them.
+    """
     return " ".join([*_installer(), *map(_quoted, packages)])
 
 
@@ -57,7 +65,7 @@ class _Vcs(msgspec.Struct):
 
 
 class _DirectUrl(msgspec.Struct):
-    """The file direct_url.json, which an installer leaves for whatever came from no index."""
+    """The file direct_url.json, which an installer writes for a package that came from no index."""
 
     url: str
     dir_info: _Info | None = None
@@ -65,7 +73,7 @@ class _DirectUrl(msgspec.Struct):
 
 
 def _wanted(lacoc: Distribution, extras: tuple[str, ...]) -> list[str]:
-    """List what pip is to install."""
+    """List the arguments for pip: LACOC with extras, or the packages of the extras."""
     text = lacoc.read_text("direct_url.json")
     try:
         origin = None if text is None else msgspec.json.decode(text, type=_DirectUrl)
@@ -104,7 +112,7 @@ def _packages(lacoc: Distribution, extras: tuple[str, ...]) -> list[str]:
 
 
 def _installer() -> list[str]:
-    """Return how to start the installer that serves this environment."""
+    """Return the words that start the installer of this environment."""
     if find_spec("pip") is None:  # such an environment was made by uv
         return ["uv", "pip", "install", "--python", _quoted(sys.executable)]
     found = shutil.which("pip")
@@ -114,7 +122,7 @@ def _installer() -> list[str]:
 
 
 def _quoted(word: str) -> str:
-    """Quote a word for the shell of this system, where it needs it."""
+    """Quote a word for the shell of this system, if it is necessary."""
     if word == "--editable":
         return word
     if os.name == "nt":

@@ -1,4 +1,4 @@
-"""Make folders, and write files without losing older ones (workshop 4-1, rules 2)."""
+"""Makes folders, and writes files without losing older ones (workshop 4-1, rules 2)."""
 
 import contextlib
 import itertools
@@ -14,7 +14,7 @@ def make_folder(folder: Path) -> None:
     """Make a folder, and those above it, if they do not exist.
 
     Raises:
-        UserError: if it can't be made, for example because a file has its name.
+        UserError: if a folder can't be made, for example because a file has its name.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -95,7 +95,7 @@ def make_room(path: Path) -> Path | None:
 def _claimed(path: Path) -> Path:
     """Make an empty file whose name has the first free number; return its path.
 
-    From then on no other program can take that number.
+    While this file is there, no other program can take the number.
     """
     for number in itertools.count(1):
         numbered = path.with_name(f"{path.stem}.{number}{path.suffix}")

@@ -1,4 +1,4 @@
-"""The language of the user at this terminal."""
+"""Finds the language of the user at this terminal."""
 
 import locale
 import os
@@ -10,7 +10,7 @@ from lacoc_shared.words.render import Language
 
 _VARIABLES = ("LACOC_LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
 _JAPANESE = 0x11
-"""Primary language in the low bits of a Windows language number."""
+"""The lower bits of a Windows language number that mean Japanese."""
 
 
 def of_process(environment: Mapping[str, str] | None = None) -> Language:
@@ -23,7 +23,7 @@ def of_process(environment: Mapping[str, str] | None = None) -> Language:
         environment: variables of the process; None reads them from the system.
 
     Returns:
-        The language; English if LACOC has no words in the language that was found.
+        The language; English if LACOC has no texts in the language that was found.
     """
     variables = os.environ if environment is None else environment
     named = next((variables[name] for name in _VARIABLES if variables.get(name)), None)
@@ -31,7 +31,7 @@ def of_process(environment: Mapping[str, str] | None = None) -> Language:
 
 
 def _spoken(name: str) -> Language:
-    """Return the language of a name such as "ja_JP.UTF-8" or Windows' "Japanese_Japan"."""
+    """Return the language that a name such as "ja_JP.UTF-8" or Windows' "Japanese_Japan" means."""
     short = name[:2].lower()
     return next((language for language in LANGUAGES if language == short), "en")
 

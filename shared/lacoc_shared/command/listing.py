@@ -1,7 +1,7 @@
-"""What the help of a group says of commands that are not imported: their names in a table.
+"""Tables with what the help says of commands, so that it need not import them.
 
-Importing all commands takes a second; their first sentences are here, and a test compares them with
-the commands. The list also tells which commands need packages that are not installed.
+Importing all commands takes a second. So their first sentences are here, and a test compares them
+with the commands. The tables also say which commands need packages that may not be installed.
 """
 
 from collections.abc import Mapping
@@ -14,26 +14,27 @@ from lacoc_shared.command import installing
 
 NEEDS = '(needs the extra "{}")'
 LACKS = 'The extra "{}" is not installed here. To install it, run: {}'
-"""Texts of the help; the table of phrases takes four times as long to read as that of help."""
+"""Texts for commands that lack a package. They are in the table of help, because the table of
+phrases takes four times as long to read."""
 
 
 class ListedCommand(NamedTuple):
-    """A command of this package in the help of its group."""
+    """A command of LACOC, as the help of its group lists it."""
 
     summary: str
-    """First paragraph of its help, in English."""
+    """First paragraph of the command's help, in English."""
     extra: str = ""
-    """Extra of the package without which it can't do its usual work; "": none."""
+    """Extra of LACOC that the command needs for its usual work; "": none."""
     panel: str = ""
-    """Heading above it, in English; "": that of all commands."""
+    """Heading under which the command stands, in English; "": the usual heading."""
 
     @property
     def lacking(self) -> bool:
-        """Whether a package that it needs is not installed."""
+        """Whether a package that the command needs is not installed."""
         return bool(self.extra) and installing.missing(self.extra)
 
     def in_words(self) -> str:
-        """Return its line of the help, in the language of this process."""
+        """Return what the list says of the command, in the language of this process."""
         summary = help_text.summary_in_words(self.summary)
         if self.lacking:
             summary += " " + escape(help_text.sentence(NEEDS, self.extra))
@@ -41,11 +42,11 @@ class ListedCommand(NamedTuple):
 
 
 Listing = Mapping[str, ListedCommand]
-"""Name -> command, in the order of the help."""
+"""Mapping from the name of a command to its entry, in the order of the help."""
 
 
 def advice(listing: Listing) -> str:
-    """Say below a list how to install what its commands lack; "": they lack nothing."""
+    """Return the line below a list that says how to install what its commands lack; "": nothing."""
     extras = dict.fromkeys(one.extra for one in listing.values() if one.lacking)
     return "\n\n".join(
         escape(help_text.sentence(LACKS, extra, installing.command(extra))) for extra in extras
@@ -135,7 +136,7 @@ _PANELS: Mapping[str, Mapping[str, ListedCommand]] = {
     },
 }
 OTHERS = "Commands of other packages"
-"""Heading for the commands that are not in the listing of a group with headings."""
+"""Heading for commands that are not in the listing, in a group that has headings."""
 COMMANDS: Listing = {
     name: one._replace(panel=panel)
     for panel, listed in _PANELS.items()
@@ -160,4 +161,4 @@ REPLAY: Listing = {
         _SERVER,
     ),
 }
-"""The commands of `lacoc replay` that a court's packages add."""
+"""The commands that the court's packages add to `lacoc replay`."""

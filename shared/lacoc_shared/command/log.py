@@ -19,7 +19,7 @@ from lacoc_shared.command import screen
 from lacoc_shared.seat import BEATS_PER_S
 
 _WAITING_MOST = 10_000
-"""Lines that may wait to be written; further lines are dropped, and their number is logged."""
+"""How many lines may wait to be written; further lines are dropped, and their number is logged."""
 _END_S = 1.0
 """When the process ends, the longest time to write the lines that still wait [s]."""
 _CLOCK = "%H:%M:%S"
@@ -69,10 +69,10 @@ class _Writer:
 
 
 def start(as_json: bool) -> None:
-    """Switch the log on. A log for a person also gets the stack of a crash.
+    """Switch the log on. In a log for a person, an error has its stack too.
 
     Args:
-        as_json: True writes lines of JSON for a program; False words for a person.
+        as_json: True: write lines of JSON for a program; False: write words for a person.
     """
     screen.accept_any_text()
     if not as_json:  # a program expects only objects: for it the stack goes to standard error
@@ -92,7 +92,7 @@ def start(as_json: bool) -> None:
 
 
 def get(**always: Any) -> FilteringBoundLogger:
-    """Return a logger that adds these values to every line."""
+    """Return a logger that adds given values to every line."""
     logger: FilteringBoundLogger = structlog.get_logger(**always)
     return logger
 
@@ -102,7 +102,7 @@ def _json(_: Any, __: str, line: structlog.typing.EventDict) -> str:
 
 
 def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
-    """Format a line for a person: wall time, match or court, match clock and sentence."""
+    """Format a line for a person: time of day, match or court, match clock and sentence."""
     at = datetime.fromisoformat(line["timestamp"]).astimezone().strftime(_CLOCK)
     head = " ".join(filter(None, (at, line.get("match_id") or line.get("court"))))
     ticks = line.get("left_ticks", line.get("clock_ticks"))
@@ -114,7 +114,10 @@ def _words(_: Any, level: str, line: structlog.typing.EventDict) -> str:
 
 
 def log_clock(ticks: int) -> str:
-    """Format ticks of a match's clock with tenths of a second: "2:04.6"; at least "0:00.0"."""
+    """Format ticks of a match's clock with tenths of a second, such as "2:04.6".
+
+    Never below "0:00.0".
+    """
     tenths = max(0, ticks) * 10 // BEATS_PER_S
     return f"{tenths // 600}:{tenths % 600 / 10:04.1f}"
 

@@ -1,7 +1,7 @@
 """Metrics of a running process for Prometheus, at their own address.
 
-Each owner keeps its numbers as plain values. A scrape reads them on its own thread,
-without a lock, so it never delays what is measured.
+Each part of the program keeps its numbers as plain values. A scrape reads them on its own thread,
+without a lock, so it never delays the part that is measured.
 """
 
 import re
@@ -21,10 +21,10 @@ class Exporter:
     """Answers scrapes at `/metrics`, in Prometheus's text format; used as a context manager.
 
     Args:
-        where: "HOST:PORT"; port 0 takes a free one.
+        where: "HOST:PORT"; port 0 chooses a free port.
 
     Raises:
-        UserError: if this is not such an address, or the port can't be opened.
+        UserError: if the address is wrong, or the port can't be opened.
     """
 
     def __init__(self, where: str) -> None:
@@ -32,7 +32,7 @@ class Exporter:
         if match is None or int(match["port"]) > 65_535:
             raise UserError(say("command.bad-metrics", where=where))
         self.registry = CollectorRegistry()
-        """Register collectors here."""
+        """The registry of Prometheus's library; register collectors here."""
         build = Info("lacoc_build", "Version of LACOC.", registry=self.registry)
         build.info({"version": __version__})
         host = match["host"].strip("[]")
@@ -43,7 +43,7 @@ class Exporter:
             raise UserError(say("command.metrics-fail", where=where, why=why)) from None
         self._server.set_app(_only_metrics(make_wsgi_app(self.registry)))
         self.url = f"http://{match['host']}:{self._server.server_port}/metrics"
-        """Address for a scraper."""
+        """The address at which a scraper reads the metrics."""
 
     def __enter__(self) -> Self:
         return self
@@ -58,7 +58,7 @@ _App = Callable[[dict[str, Any], Callable[..., Any]], Iterable[bytes]]
 
 
 def _only_metrics(app: _App) -> _App:
-    """Let an application of the library answer at /metrics alone; it would answer everywhere."""
+    """Let an application answer at /metrics only; the library's own would answer at every path."""
 
     def answer(environ: dict[str, Any], start: Callable[..., Any]) -> Iterable[bytes]:
         if environ.get("PATH_INFO") == "/metrics":

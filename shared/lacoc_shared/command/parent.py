@@ -1,7 +1,7 @@
-"""Lets a process end when the process that started it has gone, however that one ended.
+"""Ends a process when the process that started it has ended, for whatever reason.
 
-The parent keeps one end of a pipe open, and the system closes it with the parent, also after
-kill -9. Windows and macOS have no other means for this.
+The parent keeps one end of a pipe open. The system closes it when the parent ends, even after kill
+-9. On Windows and macOS there is no other way.
 """
 
 import os
@@ -9,21 +9,21 @@ import signal
 import threading
 
 VARIABLE = "LACOC_PARENT"
-"""Environment variable that is set if this process's standard input is such a pipe."""
+"""Environment variable. If it is set, the standard input of this process is such a pipe."""
 
 
 _followed = threading.Event()
 
 
 def follow() -> None:
-    """End this process with SIGTERM when its parent has gone, if its parent asked for this."""
+    """Make this process end with SIGTERM when its parent has ended, if the parent wants this."""
     if os.environ.pop(VARIABLE, None) is not None:
         _followed.set()
         threading.Thread(target=_wait, name="parent", daemon=True).start()
 
 
 def is_followed() -> bool:
-    """Return whether this process ends with its parent, which started it for itself."""
+    """Return whether this process ends together with its parent."""
     return _followed.is_set()
 
 

@@ -1,4 +1,4 @@
-"""Games, robots, bots and commands of third parties, by entry point or by folder."""
+"""Finds games, robots, bots and commands of third parties, by entry point or by folder."""
 
 import functools
 import hashlib
@@ -14,7 +14,7 @@ from lacoc_shared.words import say
 
 
 def installed(group: str) -> Mapping[str, EntryPoint]:
-    """List all entries of a group (such as "lacoc.arenas") by name, in alphabetical order."""
+    """Return all entries of a group (such as "lacoc.arenas") by name, in alphabetical order."""
     return _installed(group, tuple(sys.path))
 
 
@@ -49,7 +49,8 @@ def package(group: str, what: str, name: str) -> ModuleType:
 def installed_package(group: str, what: str, name: str) -> ModuleType:
     """Import an installed package, for a name that comes from a file or a court.
 
-    Folders are refused here: otherwise code would run only because somebody wrote its path.
+    The path of a folder is refused: otherwise code would run only because a file or a court names
+    it.
 
     Raises:
         UserError: if no such package is installed; the message lists the installed ones.

@@ -1,22 +1,23 @@
-"""Says which work goes first where there are not enough processors for all."""
+"""Sets which work goes first when there are not enough processors for all."""
 
 import contextlib
 import os
 import sys
 
 BACKGROUND = 10
-"""By how much the priority of work in the background is lower (`nice`)."""
+"""Work in the background has a `nice` value that is higher by this."""
 _LOWEST_REAL_TIME = 1
 
 
 def go_first() -> bool:
     """Give this thread real-time priority, so that it need not wait for ordinary programs.
 
-    For a thread that has little to do, at moments that matter. Threads and processes that it starts
-    have the usual priority.
+    It is for a thread that has little work and must not do it late. Threads and processes that it
+    starts have the usual priority.
 
     Returns:
-        Whether the system allows it. Only Linux does, for root and for those with a limit `rtprio`.
+        Whether the system allows it. Only Linux does, for root and for users who have a limit
+        `rtprio`.
     """
     return sys.platform == "linux" and _schedule(os.SCHED_FIFO, _LOWEST_REAL_TIME)
 
@@ -28,7 +29,7 @@ def take_turns() -> None:
 
 
 def _schedule(policy: int, priority: int) -> bool:
-    """Set how this thread is scheduled; return whether the system allows it."""
+    """Set how this thread is scheduled; return False if the system does not allow it."""
     if sys.platform != "linux":
         return False
     with contextlib.suppress(PermissionError):
@@ -41,7 +42,7 @@ def _schedule(policy: int, priority: int) -> bool:
 def give_way() -> None:
     """Lower the priority of this process, on systems that have `nice`.
 
-    Threads that run already keep theirs, so call it first.
+    Threads that are running already keep their priority, so call this first.
     """
     if hasattr(os, "nice"):
         os.nice(BACKGROUND)

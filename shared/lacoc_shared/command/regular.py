@@ -1,7 +1,8 @@
-"""Read files of a folder that a stranger may have made.
+"""Reads files of a folder that a stranger may have made.
 
-A name in such a folder can be a link to a file of this machine, a device that never ends, or a pipe
-that nobody writes to. Only regular files below the folder are read, and none that is too large.
+A name in such a folder can be a link to another file of this machine, a device that never ends, or
+a pipe to which nobody writes. So only regular files below the folder are read, and only up to a
+greatest size.
 """
 
 import os
@@ -25,7 +26,7 @@ class Missing(UserError):
 
 
 def is_regular(path: Path) -> bool:
-    """Return whether a path is a regular file, and no link to one."""
+    """Return whether a path is a regular file, and not a symbolic link."""
     try:
         return S_ISREG(path.lstat().st_mode)
     except (OSError, ValueError):
@@ -37,13 +38,13 @@ def read(folder: Path, *names: str, most_bytes: int) -> bytes:
 
     Args:
         folder: the folder; it may be a link, because the user named it.
-        names: names of the folders below it, and of the file.
+        names: the path of the file below the folder: names of folders, then of the file.
         most_bytes: a larger file is not read.
 
     Raises:
         Missing: if there is no such file.
-        UserError: if it is no regular file, too large or can't be read, or if a folder on the way
-            is a link.
+        UserError: if it is not a regular file, is too large, or can't be read; or if a folder on
+            the way is a link.
     """
     path = _inside(folder, names[:-1]) / _plain(folder, names[-1])
     try:
@@ -62,10 +63,10 @@ def read(folder: Path, *names: str, most_bytes: int) -> bytes:
 
 
 def names(folder: Path, *below: str) -> list[str]:
-    """List a folder below a folder, in order; empty if it is missing.
+    """List the names in a folder below a folder, in order; empty if there is no such folder.
 
     Raises:
-        UserError: if it is no folder, a link, or can't be read.
+        UserError: if it is a file or a link, or can't be read.
     """
     try:
         return sorted(os.listdir(_inside(folder, below)))
@@ -74,7 +75,7 @@ def names(folder: Path, *below: str) -> list[str]:
 
 
 def _inside(folder: Path, below: tuple[str, ...]) -> Path:
-    """Return a folder below a folder, after a look at each part of the way."""
+    """Return a folder below a folder, after a check that no part of the way is a link."""
     path = folder
     for name in below:
         path = path / _plain(folder, name)

@@ -1,4 +1,4 @@
-"""Replace a file in one step: whoever reads it meanwhile finds the old or the new one, whole."""
+"""Replaces a file in one step: whoever reads it meanwhile gets the whole old or new file."""
 
 import os
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def write(path: Path, content: bytes, *, secret: bool = False) -> None:
-    """Write a file in place of an older one; only its owner may ever read a secret one.
+    """Write a file in place of an older one; a secret file can at no time be read by other users.
 
     Raises:
         OSError: if it can't be written.
@@ -20,7 +20,7 @@ def write(path: Path, content: bytes, *, secret: bool = False) -> None:
 
 
 def replace(path: Path, write_part: Callable[[Path], object]) -> None:
-    """Write a file beside a path with `write_part`; it gets the path when it is whole."""
+    """Replace a file: `write_part` writes a new file beside it, which then gets its path."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     part.unlink(missing_ok=True)  # of a killed program that had this number
     try:

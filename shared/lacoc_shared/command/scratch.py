@@ -1,8 +1,8 @@
 """Folders for files that are needed only while a program runs.
 
-A program that is killed leaves its folder behind. Each folder therefore has a file that its program
-has locked; the system ends the lock with the program. Whoever makes a folder first removes those
-whose programs have gone.
+A program that is killed leaves its folder behind. So each folder has a file that its program keeps
+locked; the system ends the lock with the program. Before a program makes a folder, it removes the
+folders of programs that have ended.
 """
 
 import contextlib
@@ -18,27 +18,27 @@ from lacoc_shared.command.holding import hold
 _PREFIX = "lacoc-"
 _OWNER, _MAKING = "owner.lock", "owner.lock.new"
 _MAKING_S = 3600.0
-"""A folder that is still being made after this time [s] was left behind."""
+"""A folder that is still being made after this time [s] counts as left behind."""
 
 
 class Scratch:
     """A folder of this program, deleted with all that is in it; used as a context manager.
 
-    Only its owner can read it.
+    Only the user who runs the program can read it.
 
     Args:
-        what: what it is for; part of its name.
-        where: the folder to make it in; None: the system's folder for temporary files.
+        what: the purpose of the folder; part of its name.
+        where: the folder in which it is made; None: the system's folder for temporary files.
 
     Raises:
-        OSError: if it can't be made.
+        OSError: if the folder can't be made.
     """
 
     def __init__(self, what: str, where: Path | None = None) -> None:
         parent = Path(tempfile.gettempdir()) if where is None else where
         sweep(parent)
         self.path = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{what}-", dir=parent))
-        """The folder."""
+        """Path of the folder."""
         lock = _locked(self.path)
         self._remove = weakref.finalize(self, _remove, self.path, lock)
 
@@ -54,7 +54,7 @@ class Scratch:
 
 
 def sweep(parent: Path) -> None:
-    """Remove the folders of programs that have gone; what can't be removed stays.
+    """Remove the folders of programs that have ended; leave those that can't be removed.
 
     Args:
         parent: the folder that they are in.
@@ -66,7 +66,7 @@ def sweep(parent: Path) -> None:
 
 
 def _locked(folder: Path) -> BinaryIO:
-    """Make and lock the file that shows that a folder has an owner."""
+    """Make and lock the file which shows that the folder's program is running."""
     made = folder / _MAKING
     lock = made.open("xb")
     hold(lock)
@@ -75,9 +75,9 @@ def _locked(folder: Path) -> BinaryIO:
 
 
 def _is_left(folder: Path) -> bool:
-    """Return whether a folder was made here, and the program that made it has gone.
+    """Return whether this module made a folder, and the program that used it has ended.
 
-    A folder without our file is somebody's own, whatever its name is.
+    A folder without the lock file was made by somebody else, whatever its name is.
     """
     try:
         with (folder / _OWNER).open("rb+") as lock:

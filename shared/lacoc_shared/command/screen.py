@@ -1,8 +1,8 @@
-"""The output of the command line: two consoles, and the few things printed on them.
+"""Prints the output of the command line on two consoles.
 
-Results go to standard output and all other messages to standard error, so that a pipe
-carries results only. Colours and tables are for terminals; in a pipe a line is never
-wrapped, because a program reads it.
+Results go to standard output and all other messages to standard error, so that a pipe carries
+results only. Colours and tables are for terminals. In a pipe a line is never wrapped, because a
+program reads it.
 """
 
 import contextlib
@@ -35,10 +35,10 @@ def _console(stderr: bool) -> Console:
 
 
 def accept_any_text() -> None:
-    """Let standard output and standard error take every character.
+    """Let standard output and standard error accept every character.
 
-    A terminal of Japanese Windows has no "ö", and a file name may hold bytes that are not text.
-    Such a character is written as an escape code, so a name never crashes a program.
+    A terminal of Japanese Windows can't show "ö", and a file name may contain bytes that are not
+    text. Such a character is written as an escape code, so that no name crashes a program.
     """
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
@@ -60,7 +60,7 @@ def show(what: RenderableType | Phrase, to: Console | None = None) -> None:
 
     Args:
         what: a plain string is printed as it is; square brackets are not markup.
-        to: the console; None is standard output.
+        to: the console; None: standard output.
     """
     if isinstance(what, Phrase):
         what = render(what)
@@ -84,7 +84,7 @@ def warn(what: Phrase | str) -> None:
 
 
 def error(what: Phrase | str) -> None:
-    """Print in one line why the command stops."""
+    """Print one line that says why the command stops."""
     show(Text.assemble((render(say("command.error")), "bold red"), (render(what), "red")), stderr)
 
 
@@ -115,12 +115,15 @@ def mistakes_table(mistakes: Sequence[Mistake]) -> Table:
 
 
 def table(*titles: Phrase) -> Table:
-    """Begin a table with the titles of its columns."""
+    """Make a table with titles of its columns, and no rows yet."""
     return Table(*map(render, titles))
 
 
 def print_json(value: Any) -> None:
-    """Print a value as one line of JSON: plain values, tuples and messages; bytes as base64."""
+    """Print a value as one line of JSON.
+
+    It may contain plain values, tuples and messages; bytes are written as base64.
+    """
     sys.stdout.write(json_line(value) + "\n")
     sys.stdout.flush()
 
@@ -146,7 +149,7 @@ def _encodable(value: Any) -> Any:
 
 
 def progress() -> "Progress":
-    """Make a progress bar on standard error; each task is one bar, and all vanish at the end."""
+    """Make progress bars on standard error, one for each task; they disappear at the end."""
     from rich.progress import (  # half of the time that the other imports take
         BarColumn,
         MofNCompleteColumn,

@@ -1,8 +1,9 @@
-"""The three standard streams: closed ones are opened, and output that fails says so.
+"""The three standard streams: opens closed ones, and reports if output fails.
 
-A shell may start a command with a closed stream (`>&-`) or one that takes nothing (`> /dev/full`).
-Python then has None for a stream, and the next file that is opened gets its number, so that output
-would go into that file. And a failed write can't be told from that of any other file.
+A shell may start a command with a closed stream (`>&-`), or with one that can't be written (`>
+/dev/full`). Python then has None for a closed stream, and the next file that is opened gets the
+stream's number, so that output would go into that file. And without this module a failed write to
+standard output looks like a failed write to any other file.
 """
 
 import io
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
 _MODES = (os.O_WRONLY, os.O_RDONLY, os.O_WRONLY)
-"""How the null device is opened in place of each stream: input and output then fail, as they would
-with a closed stream; messages to standard error vanish."""
+"""With which modes the null device is opened in place of a closed stream. Input and output then
+fail, as with a closed stream; messages to standard error are lost."""
 
 
 class OutputFailed(OSError):
@@ -23,7 +24,7 @@ class OutputFailed(OSError):
 
 
 def open_all() -> None:
-    """Open the streams that are closed, and let a failed write to standard output say so."""
+    """Open streams that are closed, and make a failed write to standard output recognisable."""
     for number, mode in enumerate(_MODES):
         try:
             os.fstat(number)
@@ -45,14 +46,14 @@ def open_all() -> None:
 
 
 def drop_output() -> None:
-    """Let everything that is still written to standard output vanish."""
+    """Discard everything that is written to standard output from now on."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, sys.stdout.fileno())
     os.close(null)
 
 
 class _Output(io.FileIO):
-    """Standard output, whose errors differ from those of other files."""
+    """Standard output; a failed write raises `OutputFailed`, and not the error of any file."""
 
     def write(self, data: "ReadableBuffer", /) -> int:
         try:

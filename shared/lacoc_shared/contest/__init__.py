@@ -1,1 +1,1 @@
-"""The contest file, and the ways for each person to get into a contest."""
+"""The contest file, secrets and links: all that people and programs need to reach a contest."""

@@ -1,4 +1,4 @@
-"""A client's access to a court: where the court is, how it proves its name, and who asks."""
+"""A client's way to a court: the court's addresses and certificate, and the client's own token."""
 
 from collections.abc import Sequence
 from typing import Self
@@ -7,26 +7,27 @@ import msgspec
 
 
 class Access(msgspec.Struct, frozen=True, kw_only=True):
-    """Address of a court, and proof of identity for a client."""
+    """How a client reaches a court, and with which token."""
 
     court: str
     connect: str
     """Address of the court."""
     others: tuple[str, ...] = ()
-    """Further addresses at which the court, or another one of the event, may be."""
+    """Further addresses at which this court, or another court of the event, may be found."""
     seat: str = ""
-    """The seat's name; "": not known yet, or none."""
+    """Id of the seat; "": the seat is not known yet, or the client has none."""
     token: str = ""
     """The person's secret; "" for spectators."""
     authority: str = ""
-    """Certificate (PEM) of a private authority that vouches for the court; "": public ones only."""
+    """Certificate (PEM) of a private authority that signed the court's certificate; "": only public
+    authorities are trusted."""
 
     def __repr__(self) -> str:
         return f"Access(court={self.court!r}, seat={self.seat!r}, connect={self.connect!r})"
 
     @property
     def addresses(self) -> list[str]:
-        """Where to look for the court: the first address that answers is used."""
+        """All addresses at which to look for the court; the first one that answers is used."""
         return [self.connect, *self.others]
 
     def watching(self) -> Self:
@@ -34,7 +35,7 @@ class Access(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.structs.replace(self, seat="", token="")
 
     def with_others(self, addresses: Sequence[str]) -> Self:
-        """Return this access with these further addresses."""
+        """Return this access with further addresses in place of those that it has."""
         return msgspec.structs.replace(self, others=tuple(addresses))
 
     def of_seat(self, seat: str, token: str) -> Self:

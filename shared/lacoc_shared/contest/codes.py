@@ -5,7 +5,7 @@ import secrets
 import unicodedata
 
 _LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ23456789"
-"""I, O, 0 and 1 are missing, because people take them for each other."""
+"""Letters and digits of codes; I, O, 0 and 1 are missing, because people confuse them."""
 _LENGTH = 6
 
 

@@ -1,4 +1,4 @@
-"""The tables of a contest file that name machines: courts, and the second machine."""
+"""The tables of a contest file that name machines: those of courts, and of the second machine."""
 
 import itertools
 from pathlib import Path
@@ -25,12 +25,12 @@ LOOPBACK = f"127.0.0.1:{DEFAULT_PORT}"
 
 
 class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A court: all that is needed to start it or to reach it."""
+    """A court of the contest file: everything that is needed to start it or to reach it."""
 
     arena: str = "othello"
     """Name of an installed arena, or the path of an arena's folder."""
     listen: Annotated[tuple[str, ...], msgspec.Meta(min_length=1)] = (LOOPBACK,)
-    """Addresses on which the court listens; by default a port of its own on its machine."""
+    """Addresses at which the court listens; by default a port of its own on its machine."""
     connect: str = ""
     """Address for clients; "": the first of `listen`."""
     elsewhere: str = ""
@@ -46,36 +46,40 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     @property
     def most_delay_ms(self) -> int:
-        """Largest delay that is added to make links equal [ms]; 0: none is added."""
+        """Largest delay that is added to make links equal [ms]; 0: links are not made equal."""
         return self.input_delay_max_ms if self.input_delay == "equal" else 0
 
     @property
     def host(self) -> str:
-        """Host for clients; "" if the court listens on all addresses and `connect` has no host."""
+        """Host name for clients.
+
+        "" if the court listens at all addresses and `connect` has no host.
+        """
         found = address_host(self.connect or self.listen[0])
         return "" if found in ANY_HOST else found
 
     @property
     def own_listen(self) -> tuple[str, ...]:
-        """Addresses at which the court listens on its own machine, which may be elsewhere."""
+        """Addresses at which the court listens, on whichever machine runs it."""
         return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
 
     def address(self, any_host: str = "127.0.0.1") -> str:
         """Return the address to which a client connects.
 
         Args:
-            any_host: the host to name if the court listens on all addresses of its machine.
+            any_host: the host to put into the address if the court listens at all addresses of its
+                machine.
         """
         return self.elsewhere or self._address_here(any_host)
 
     def stand_in(self, any_host: str = "127.0.0.1") -> str:
-        """Return the address to which a client connects if the court's machine is gone.
+        """Return the address for clients when the office's machine takes the place of the court's.
 
         Args:
             any_host: as in `address`.
 
         Returns:
-            The address; "" if the court is not run elsewhere.
+            The address; "" if the court does not run elsewhere.
         """
         return self._address_here(any_host) if self.elsewhere else ""
 
@@ -88,13 +92,13 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A second machine keeps a copy of all that the office keeps, and the contest can go on there.
+    """The second machine: it copies everything that the office keeps, so that it can take over.
 
-    All copies are encrypted with a key that is made from a token. The token itself is never sent.
+    Copies are encrypted with a key that is made from a token, which itself is never sent.
     """
 
     office: str
-    """Address of the office's machine, where the second one copies."""
+    """Address of the office's machine, from which the second machine copies."""
 
     @property
     def listen(self) -> str:
@@ -103,7 +107,7 @@ class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 def wrong_in(table: str, error: UserError) -> UserError:
-    """Return an error whose sentences begin with the name of a table in the contest file."""
+    """Return an error with the name of a table of the contest file before each of its sentences."""
     return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
 
 
@@ -112,8 +116,8 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
 
     Args:
         name: the court's name.
-        table: what the file has for it.
-        number: its place among the courts, from 0: without `listen` it has a port of its own.
+        table: the court's table in the file.
+        number: its index among the courts; a court without `listen` gets a port by it.
         folder: the contest file's folder.
         protocol: protocol of addresses that name none: "tls" in a contest with a certificate.
 
@@ -163,7 +167,7 @@ def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> Non
     Two courts with different `connect` hosts are on two machines.
 
     Raises:
-        UserError: if two share one.
+        UserError: if two programs share a port.
     """
     taken = [at for court in courts.values() for at in court.listen]
     for (first, one), (second, other) in itertools.combinations(courts.items(), 2):
@@ -181,11 +185,11 @@ def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> Non
 
 
 def beside(folder: Path, name: str) -> str:
-    """Return the name of something installed unchanged, and a path from a folder as a full path.
+    """Return the full path of a path in the contest file; return an installed name unchanged.
 
     Args:
         folder: folder of the contest file.
-        name: a name, or a path: it has a slash or a point.
+        name: an installed name; or a path, which has a slash or a point.
 
     Raises:
         UserError: if the system can't read the path.
@@ -198,6 +202,6 @@ def beside(folder: Path, name: str) -> str:
 
 
 def _any_host(address: str) -> str:
-    """Return an address at all addresses of a machine, with the port of another address."""
+    """Return the address of an address's port at all addresses of a machine."""
     protocol, port = address.partition("/")[0], address.rpartition(":")[2]
     return f"{protocol}/{ANY_HOST[0]}:{port}"

@@ -1,4 +1,4 @@
-"""The contest file: courts, addresses, stages, limits (docs/operations.md). It has no secret.
+"""The contest file: courts, addresses, stages, limits (docs/operations.md). It contains no secret.
 
 An organiser writes it once ('lacoc contest init'). Courts, office and pages are started from it.
 """
@@ -33,11 +33,11 @@ from lacoc_shared.words import Phrase, say
 
 _NO_NAME = "Contest"
 ENTRIES, PICTURE = "entries", "picture.webp"
-"""Name of the folder with the files of all teams, and of a team's picture among them."""
+"""Name of the folder with the files of all teams, and name of a team's picture in it."""
 ENTRY_HASH = re.compile("[0-9a-f]{32}")
-"""Matches the hash of a team's files, by which they are kept."""
+"""Matches the hash of a team's files, under which the files are kept."""
 MAIN = "main"
-"""Name of the court if none is given."""
+"""Name of the only court, if the file gives none."""
 
 
 class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
@@ -49,15 +49,15 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
     robot: str = "hexapod"
     """Robot of a team that sends no robot file: an installed robot's name, or a file."""
     limits: dict[str, float] = {}
-    """Limits for robots, by name, where they differ from the defaults (rules 1)."""
+    """Limits for robots that differ from the defaults (rules 1), by name."""
     health: HealthLimits = HealthLimits()
     """Limits beyond which a match should be played again."""
     replays: Replays = "at-once"
-    """From when everybody may see the records, which hold the gaits of both teams."""
+    """When everybody may see the records, which contain the gaits of both teams."""
     cheers: bool = True
     """Whether people who watch may cheer."""
     public: PublicAddress = PublicAddress()
-    """How everybody reaches the pages, and the certificate of pages and courts."""
+    """The address at which everybody reaches the pages, and the certificate of pages and courts."""
     standby: Standby | None = None
     """The second machine; None: there is none."""
     courts: dict[str, ContestCourt]
@@ -66,32 +66,33 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
     least_rest_s: float = 0.0
     """Shortest time between two matches of a team."""
     entries_close: datetime | None = None
-    """From then on no team can enter, and files change only with a reason; None: after the first
-    draw."""
+    """Time after which no team can enter, and files change only with a reason; None: entries close
+    with the first draw."""
     secrets: Secrets
-    """All tokens; they are beside the contest file, not in it."""
+    """All tokens. They are in a file beside the contest file, never in it."""
 
     @property
     def own_host(self) -> str:
-        """Host of this machine for others: with a certificate the name of the pages, if it has one.
+        """Host of this machine for others: with a certificate, that of the pages' address.
 
-        A public certificate has that name, and no IP address.
+        A public certificate is for this name, and not for an IP address. Otherwise the host is this
+        machine's IP address.
         """
         return (self.public.host if self.public.pair else "") or own_address()
 
     @property
     def given_name(self) -> str:
-        """The name that the organiser gave the contest; "" if none."""
+        """The name that the organiser gave to the contest; "": the organiser gave no name."""
         return "" if self.name == _NO_NAME else self.name
 
     @property
     def closes_ms(self) -> int:
-        """When entries close, in milliseconds since 1970, UTC; 0: after the first draw."""
+        """Time when entries close, in milliseconds since 1970 (UTC); 0: with the first draw."""
         return round(1000 * self.entries_close.timestamp()) if self.entries_close else 0
 
     @property
     def asked(self) -> str:
-        """The court that teams ask where they play: the first one on the office's machine."""
+        """Name of the court that teams ask where they play: the first on the office's machine."""
         here = (name for name, court in self.courts.items() if not court.elsewhere)
         return next(here, next(iter(self.courts)))
 
@@ -123,7 +124,7 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def sheet_path(path: Path) -> Path:
-    """Return where the newest sheet of a contest is: beside its contest file."""
+    """Return the path of a contest's newest sheet, beside the contest file."""
     return path.resolve().with_suffix(".json")
 
 
@@ -137,7 +138,9 @@ def published_path(file: Path) -> Path:
 
 
 def picture_path(sheet: Path, files: str) -> Path | None:
-    """Return where a team's picture is, if it has one; None: no team can have such files.
+    """Return the path of a team's picture; the file exists only if the team has a picture.
+
+    None if the hash can't be one of a team's files.
 
     Args:
         sheet: the contest's sheet.
@@ -149,18 +152,18 @@ def picture_path(sheet: Path, files: str) -> Path | None:
 
 
 def facts_path(path: Path) -> Path:
-    """Return where the database of a contest's facts is: beside its contest file."""
+    """Return the path of the database with a contest's facts, beside the contest file."""
     return path.resolve().with_suffix(".db")
 
 
 def secrets_path(path: Path) -> Path:
-    """Return where all tokens of a contest are: beside its contest file."""
+    """Return the path of the file with all tokens of a contest, beside the contest file."""
     path = path.resolve()
     return path.with_name(f"{path.stem}.secrets.json")
 
 
 def load(path: Path) -> ContestFile:
-    """Read a contest file; relative paths in it start from its own folder.
+    """Read a contest file; relative paths in it start at its own folder.
 
     Raises:
         UserError: if it can't be read, or if entries are wrong; the message names each of them.
@@ -198,7 +201,7 @@ def loads(data: bytes, path: Path) -> ContestFile:
 
 
 def wrong_entries(path: Path, error: UserError) -> UserError:
-    """Return an error whose sentences begin with the name of the contest file."""
+    """Return an error with the name of the contest file before each of its sentences."""
     return error.each(lambda wrong: say("contest.wrong", file=str(path), wrong=wrong))
 
 
@@ -301,7 +304,7 @@ def _public(general: _General, folder: Path) -> PublicAddress:
 
 
 def _check_time(entries: dict[str, Any]) -> None:
-    """Check the time in [contest]; a wrong one is removed from the entries."""
+    """Check the time in [contest]; remove it from the entries if it is wrong."""
     close = entries.get("entries_close")
     try:
         msgspec.convert(close, datetime | None)

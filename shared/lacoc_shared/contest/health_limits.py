@@ -13,16 +13,17 @@ class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     """Limits of a match's health; beyond any of them the match should be played again."""
 
     real_time_factor: _Amount = 0.98
-    """Least real-time factor over the whole of PLAYING."""
+    """Least real-time factor over all of PLAYING."""
     slow_beats_percent: _Percent = 1.0
-    """Largest share of slow beats in PLAYING."""
+    """Largest share of slow beats in PLAYING [%]."""
     worst_late_ms: _Amount = 200.0
-    """Largest delay with which a beat of PLAYING may begin; a delay above 100 ms is not made up."""
+    """Largest delay with which a beat of PLAYING may begin [ms]; a delay above 100 ms is not made
+    up for."""
     silent_s: _Amount = 5.0
-    """Longest time that a seat may be silent in PLAYING."""
+    """Longest time of PLAYING for which a seat may be silent [s]."""
     heard_percent: _Percent = 70.0
-    """Least share of a seat's repeated keys that must arrive."""
+    """Least share of a seat's repeated keys that must arrive [%]."""
     faults: _Times = 0
-    """Largest number of times that physics may stop."""
+    """How many times physics may stop."""
     resumptions: _Times = 2
-    """Largest number of times that the court may be restarted after it was killed."""
+    """How many times the court may be restarted after it was killed."""

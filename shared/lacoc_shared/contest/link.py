@@ -1,6 +1,6 @@
-"""What a link says: where the pages are, which of them it opens, and who has it; pure.
+"""The link of an event: the address of the pages, the page that it opens, and a token. Pure.
 
-Browsers never send the part after `#`, so no server on the way sees a token.
+Browsers never send the part after `#`, so no server on the way sees the token.
 """
 
 import re
@@ -20,16 +20,18 @@ _MOST = 2000
 
 
 class Link(msgspec.Struct, frozen=True, kw_only=True):
-    """A link: what opens the pages of an event, in a browser and for commands."""
+    """A link with which a person opens the pages of an event, in a browser or with a command."""
 
     pages: str
     """Address of the pages, without a slash at its end."""
     page: str = ""
-    """The page that it opens, such as "play"; "": it is the address of the pages."""
+    """The page that the link opens, such as "play"; "": the link is only the address of the
+    pages."""
     court: str = ""
-    """The court that it names; "": none."""
+    """The court that the link names; "": none."""
     token: str = ""
-    """The secret of a seat, a team, a referee or the organiser; "": who has it only watches."""
+    """The token of a seat, a team, a referee or the organiser; "": whoever has the link can only
+    watch."""
     authority: str = ""
     """Fingerprint of the event's own authority (SHA-256, hexadecimal); "": it has none."""
 
@@ -38,7 +40,7 @@ class Link(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def text(self) -> str:
-        """The link as people hand it on."""
+        """The link as a text."""
         secret = {"token": self.token, "authority": self.authority}
         end = "&".join(f"{name}={value}" for name, value in secret.items() if value)
         query = f"?court={quote(self.court)}" if self.court else ""
@@ -46,10 +48,10 @@ class Link(msgspec.Struct, frozen=True, kw_only=True):
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Take a link apart.
+        """Read a link from a text.
 
         Raises:
-            UserError: if it is none.
+            UserError: if the text is not a link.
         """
         parts = _parts(text.strip())
         path = parts.path.rstrip("/")

@@ -1,4 +1,4 @@
-"""Names that people choose, of teams and in classes: what may be one, and which look alike."""
+"""Names of teams and students: which texts are allowed, and which names look alike."""
 
 import re
 import unicodedata
@@ -10,19 +10,20 @@ _UNSEEN = re.compile(
     "\U0001d159\U000e0100-\U000e01ef]"
 )
 """Signs that are printable for Python but can't be seen, such as the Hangul filler. A name may
-contain them, because many emoji do; but a name needs other signs too, and is compared without
-them."""
+contain them, because many emoji do. But a name must have other signs too, and names are compared
+without these."""
 
 
 def read_name(text: str, most: int) -> str | None:
-    """Return a name without spaces at its ends; within it, several spaces become one.
+    """Return a name in its usual form: no spaces at the ends, and never several in a row.
 
     Args:
-        text: what somebody wrote.
+        text: the name as somebody typed it.
         most: largest number of characters.
 
     Returns:
-        The name; None if nothing of it can be seen, it is too long, or it has unprintable signs.
+        The name; None if it is too long, has unprintable signs, or has only signs that can't be
+        seen.
     """
     name = " ".join(unicodedata.normalize("NFC", text).split())
     can_be_seen = bool(_UNSEEN.sub("", name).strip())
@@ -48,12 +49,12 @@ def look_alike(one: str, other: str) -> bool:
 
 
 def told_apart(name: str, others: Iterable[str], side: str, most: int) -> str:
-    """Return a name with a side added if it looks like one of the others.
+    """Return a name; if it looks like one of the others, with a word that tells it apart.
 
     Args:
         name: the name.
-        others: the names beside it.
-        side: what tells it apart, such as "left".
+        others: the names that are shown beside it.
+        side: the word that tells it apart, such as "left".
         most: largest number of characters.
     """
     if not any(look_alike(name, other) for other in others):
@@ -73,7 +74,7 @@ def _skeleton(name: str) -> str:
 
 @cache
 def _prototypes() -> dict[str, str]:
-    """Return for each character that looks like others the one that stands for all of them."""
+    """Return, for characters that look alike, the character that stands for all of them."""
     from confusable_homoglyphs.confusables import confusables_data  # a megabyte; few need it
 
     # The table has pairs in both directions. A character with one partner has that one's form; of

@@ -1,7 +1,7 @@
 """The secrets of a contest: all its tokens, in a file beside the contest file.
 
-The contest file itself has no secret. Each token is made when it is first asked for. Whoever
-replaces a token in the file, or removes it, takes it from the person who has it.
+The contest file itself contains no secret. Each token is made when it is first needed. If an
+organiser removes or replaces a token in the file, the old token is not valid any more.
 """
 
 import time
@@ -21,26 +21,27 @@ from lacoc_shared.words import say
 
 _OFFICE, _STANDBY, _ORGANISER = "office", "standby", "organiser"
 _ALWAYS = (_OFFICE, _STANDBY, _ORGANISER)
-"""Made with the first token, so that a copy of the file has them."""
+"""Tokens that are made together with the first one, so that every copy of the file has them."""
 _TEAM, _STAFF = "team.", "staff."
 _WAIT_S = 5.0
-"""Longest wait for another program that makes a token."""
+"""Longest wait for another program that is making a token [s]."""
 
 
 class Secrets:
-    """The file of all tokens; only its owner can read it. Any thread, and any program, may use it.
+    """The file with all tokens; only the user who made it can read it.
 
-    All its methods raise `UserError` if the file can't be read or written.
+    Any thread or program may use it. All its methods raise `UserError` if the file can't be read or
+    written.
 
     Args:
-        path: the file; it is made with the first token.
+        path: the file; it is made when the first token is made.
     """
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._lock = RLock()
         self._read_at: tuple[int, int] | None = (0, 0)
-        """State of the file (`_state`) when it was read; nothing has this one."""
+        """State of the file (`_state`) when it was read; at first a value that no file has."""
         self._tokens: dict[str, str] = {}
 
     def __repr__(self) -> str:
@@ -53,7 +54,10 @@ class Secrets:
 
     @property
     def standby(self) -> str:
-        """Token from which the key is made that encrypts what a second machine copies."""
+        """Token from which a key is made.
+
+        With this key the second machine's copies are encrypted.
+        """
         return self._of(_STANDBY)
 
     @property
@@ -83,25 +87,25 @@ class Secrets:
         return self._owner(_TEAM, token)
 
     def staff(self, name: str) -> str:
-        """Return the token of one of the staff, who may do what the organiser may."""
+        """Return the token of a member of the staff, who may do the same as the organiser."""
         return self._of(f"{_STAFF}{name}")
 
     def staff_of(self, token: str) -> str | None:
-        """Return who of the staff has a token; None: nobody has it."""
+        """Return the member of the staff who has a token; None: nobody has it."""
         return self._owner(_STAFF, token)
 
     @property
     def staff_names(self) -> tuple[str, ...]:
-        """Who of the staff has a token."""
+        """The names of the staff who have a token."""
         names = (name for name in self._read() if name.startswith(_STAFF))
         return tuple(sorted(name.removeprefix(_STAFF) for name in names))
 
     def forget(self, *teams: str) -> None:
-        """Forget the tokens of teams: their links open nothing any more."""
+        """Forget the tokens of teams, so that their links are not valid any more."""
         self._forget({f"{_TEAM}{name}" for name in teams})
 
     def forget_staff(self, name: str) -> None:
-        """Forget the token of one of the staff."""
+        """Forget the token of a member of the staff."""
         self._forget({f"{_STAFF}{name}"})
 
     def _owner(self, kind: str, token: str) -> str | None:
@@ -114,7 +118,7 @@ class Secrets:
         self._change(lambda there: {name: one for name, one in there.items() if name not in gone})
 
     def check_copied(self, *courts: str) -> None:
-        """Check that this file is the office's: on another machine no token may be made.
+        """Check that this file was copied from the office: on another machine no token may be made.
 
         Args:
             courts: courts whose referees have tokens.
@@ -148,7 +152,11 @@ class Secrets:
             return self._tokens
 
     def _change(self, changed: Callable[[dict[str, str]], dict[str, str]]) -> dict[str, str]:
-        """Write other tokens in place of those that are there; return them."""
+        """Change tokens in the file, and return all tokens.
+
+        Args:
+            changed: takes all tokens by name; returns those that the file shall have.
+        """
         with self._lock:
             try:
                 with _alone(self._path.with_name(f".{self._path.name}.lock")):
@@ -162,7 +170,7 @@ class Secrets:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[None]:
-    """Keep all other programs out until the block ends."""
+    """Keep other programs from changing the tokens until the block ends."""
     with path.open("ab") as lock:
         end_s = time.monotonic() + _WAIT_S
         while not hold(lock):
@@ -173,7 +181,7 @@ def _alone(path: Path) -> Iterator[None]:
 
 
 def _state(path: Path) -> tuple[int, int] | None:
-    """Return numbers that differ each time the file is replaced; None: there is no file."""
+    """Return numbers that change each time the file is replaced; None: there is no file."""
     try:
         found = path.stat()
     except FileNotFoundError:

@@ -15,22 +15,22 @@ def new_token() -> str:
 
 
 def new_token_hash(token: str) -> str:
-    """Hash a token for storage, with its own salt (`seal.hash_token`)."""
+    """Return a hash of a token for storage, with a random salt (`seal.hash_token`)."""
     return seal.hash_token(token, secrets.token_bytes(_SALT_BYTES))
 
 
 def lasting_hash(token: str) -> str:
-    """Hash a token with a salt that is made from the token.
+    """Return a hash of a token with a salt that is made from the token itself.
 
-    So the hash is the same after each restart. Whoever has the same hash in the next match of a
-    court keeps the seat.
+    So the hash is the same after each restart. If the next match of a court has the same hash for a
+    seat, the controller keeps the seat.
     """
     return seal.hash_token(token, digest(token))
 
 
 def digest(token: str) -> bytes:
-    """Return a digest of a token, to find it among others.
+    """Return a digest of a token, by which the token is found among others.
 
-    The time that the comparison of digests takes tells nothing of a token.
+    The time for comparing digests gives nothing of the token away.
     """
     return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -1,8 +1,8 @@
-"""Read TOML that may be hostile.
+"""Reads TOML that may be hostile.
 
-On hostile text `tomllib` raises three kinds of exceptions, and takes seconds and a
-gigabyte for 32 KiB of `a.a.a.a`. This module raises one error, and its result is
-bounded: nesting is limited, and every number fits into 64 bits unless the caller allows more.
+On hostile text `tomllib` raises three kinds of exceptions, and takes seconds and a gigabyte for 32
+KiB of `a.a.a.a`. This module raises one kind of error, and limits the result: nesting is limited,
+and every number fits into 64 bits unless the caller allows more.
 """
 
 import re
@@ -13,7 +13,7 @@ from lacoc_shared.mistakes import printable
 from lacoc_shared.words import Phrase, render, say
 
 MAX_BYTES = 1 << 20
-"""Limit for files that an organiser writes; a contestant's file may have a lower one."""
+"""Largest file that an organiser writes [bytes]; for a contestant's file the limit may be lower."""
 
 _DOTS = 100  # most dots in a line; time and memory for a key grow with the square of its parts
 _DEEPEST = 32
@@ -47,7 +47,8 @@ class BadToml(ValueError):
     def phrase(self) -> Phrase:
         """Reason, line and remedy as one phrase, for use in a sentence.
 
-        The text of a line with a token is left out: whoever reads the message may not know it.
+        The text of a line with a token is left out, because the reader of the message may not see
+        the token.
         """
         line = None if "token" in self.line else printable(self.line.strip(), _LINE) or None
         return say("toml.bad", reason=self.reason, row=self.row, remedy=self.remedy, line=line)
@@ -63,9 +64,9 @@ def read_toml(
 
     Args:
         text: the file; bytes are UTF-8, with or without a byte order mark.
-        max_bytes: a longer text is refused unread.
-        any_integers: True accepts integers beyond 64 bits. The caller then checks the integers, and
-            can say where a wrong one stands.
+        max_bytes: a longer text is refused without being read.
+        any_integers: whether integers beyond 64 bits are accepted. The caller then checks the
+            integers, and can say at which place a wrong one is.
 
     Raises:
         BadToml: if it is too long, not TOML or nested too deep, has too many dots in a line, or has

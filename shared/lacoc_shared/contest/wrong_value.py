@@ -1,4 +1,4 @@
-"""Reads values of a file that a person wrote, and puts into words which of them are wrong."""
+"""Checks values of a file that a person wrote, and says in sentences which of them are wrong."""
 
 import re
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -37,7 +37,7 @@ def convert(value: Any, kind: type[T], where: str) -> T:
         where: its place in the file, such as "court.main"; "": the whole file.
 
     Raises:
-        UserError: if it is wrong, with a sentence for each of its entries that is.
+        UserError: if it is wrong, with a sentence for each wrong entry.
     """
     wrong: list[Phrase] = []
     left_out: set[str] = set()
@@ -65,16 +65,16 @@ def convert(value: Any, kind: type[T], where: str) -> T:
 
 
 def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[str, Phrase | str]:
-    """Return where a value is wrong and what should be there.
+    """Return which entry is wrong, and what is expected there.
 
     Args:
         error: raised by `msgspec.convert` for a table read from TOML.
-        kind: the type that the table should have, for the words that an entry may be; None: it is
+        kind: the type that the table should have, from which possible words are found; None: it is
             not known.
 
     Returns:
-        The place, such as "match.duration_s", or "" for the whole table; and what was expected, as
-        a phrase where one is known, else in msgspec's own words.
+        The place of the entry, such as "match.duration_s", or "" for the whole table; and what was
+        expected: a phrase if one is known, else msgspec's own words.
     """
     what, _, place = str(error).partition(" - at `$")
     place = place.rstrip("`").lstrip(".")
@@ -84,7 +84,7 @@ def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[s
 
 
 def _choices(kind: Any, place: str) -> list[str]:
-    """Return the words that the entry at a place may be; none if they are not known."""
+    """Return the words that are possible for the entry at a place; none if they are not known."""
     for name in place.split("."):
         fields = get_type_hints(kind) if isinstance(kind, type) else {}
         kind = fields.get(name)

@@ -1,4 +1,4 @@
-"""Gaits: tables of postures and their files."""
+"""Gaits: tables of postures and sequences, and the files that contain them."""
 
 from lacoc_shared.gait.tables import Level
 

@@ -20,9 +20,9 @@ from lacoc_shared.mistakes import printable
 from lacoc_shared.words import Phrase, say
 
 RANGE_DEG = 150.0
-"""The movable range is -150 to +150 degrees (workshop 3-1)."""
+"""Range in which a joint may move: -150 to +150 degrees (workshop 3-1)."""
 MAX_KEYS = 10
-"""Digit keys in a file: [0] to [9]."""
+"""Most digit keys in a file: [0] to [9]."""
 MAX_POSTURES_PER_KEY = 100
 
 LEG_LABELS: dict[int, tuple[str, ...]] = {
@@ -30,7 +30,8 @@ LEG_LABELS: dict[int, tuple[str, ...]] = {
     6: ("R,F", "R,C", "R,B", "L,B", "L,C", "L,F"),
     8: ("R,F", "R,FC", "R,BC", "R,B", "L,B", "L,BC", "L,FC", "L,F"),
 }
-"""Number of legs -> leg labels, for the robots that a gait's number of columns identifies."""
+"""The usual labels of a robot's legs, by their number. A gait file shows the number of legs by its
+number of columns."""
 
 # Maps full-width forms (typed with a Japanese input method) to ASCII, the ideographic space and
 # no-break spaces (copied from web pages) to a space, the minus sign U+2212 to a hyphen. U+FF0D
@@ -92,9 +93,10 @@ def leg_labels(legs: int) -> tuple[str, ...]:
 
 
 def degrees_of(angle_rad: float) -> float:
-    """Return the shortest number of degrees that reads back as exactly this angle.
+    """Return the shortest number of degrees that, when it is read, gives exactly this angle.
 
-    An angle that came from a file always has one. For other angles, return the nearest number.
+    For an angle that came from a file there always is such a number. For another angle, return the
+    nearest number.
     """
     near = math.degrees(angle_rad)
     for digits in range(1, 16):

@@ -1,4 +1,4 @@
-"""Make level B from level A: join postures into the sequences of a locomotion table."""
+"""Makes level B from level A: joins postures into the sequences of a locomotion table."""
 
 from collections.abc import Sequence
 

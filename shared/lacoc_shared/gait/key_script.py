@@ -2,8 +2,8 @@
 
 A line holds keys, which are pressed in order: `2`, or `tab 1`, or `1 2 3 4` (also `1234`). A line
 may begin with a time [s], which has a decimal point: `1.5 3` presses key 3 when 1.5 s have passed
-after the keys before. Time runs only while the match is played; keys that move the robot wait until
-it is played. `#` begins a comment.
+after the keys before. Times count only while the match is played, and keys that move the robot wait
+until it is played. `#` begins a comment.
 """
 
 import math
@@ -16,7 +16,7 @@ NAMED = ("tab", "space", "up", "down", "left", "right")
 MOVING = frozenset("0123456789x") | {"up", "down", "left", "right"}
 """Keys that have an effect only while the match is played."""
 ARROWS = {"up": 2, "left": 1, "right": 3, "down": 0}
-"""The digit of each arrow, at level B."""
+"""The digit that each arrow key stands for, at level B."""
 _LETTERS = frozenset("xzrq")
 
 
@@ -26,21 +26,22 @@ class _ScriptStep(NamedTuple):
 
 
 class KeyScript:
-    """Holds the keys of a script, and returns each when it is due."""
+    """Holds the keys of a script, and returns each key when it is due."""
 
     def __init__(self) -> None:
         self._steps: deque[_ScriptStep] = deque()
         self._since_s = 0.0
-        """Seconds of play at which the last key was due; times count from there."""
+        """Time of play at which the last key was due [s]; the times in the script count from
+        there."""
         self._moved_s = -1.0
-        """Seconds of play at which the last key that moves the robot was pressed."""
+        """Time of play at which the last key that moves the robot was pressed [s]."""
         self._lines = 0
 
     def add(self, line: str) -> Phrase | None:
-        """Take in a line.
+        """Read a line of the script, and add its keys.
 
         Returns:
-            What is wrong with the line, which is then left out; else None.
+            What is wrong with the line, whose keys are then left out; None: nothing is wrong.
         """
         self._lines += 1
         words = line.partition("#")[0].split()
@@ -60,7 +61,7 @@ class KeyScript:
 
         Args:
             playing_s: how long the match has been played [s].
-            playing: whether it is being played.
+            playing: whether the match is being played now.
         """
         keys: list[str] = []
         while self._steps:
@@ -83,7 +84,7 @@ class KeyScript:
 
 
 def _keys(word: str) -> list[str]:
-    """Return the keys that a word stands for: one with a name, or one for each character."""
+    """Return the keys for which a word stands: one key with a name, or one for each character."""
     word = word.lower()
     return [word] if word in NAMED or len(word) == 1 else list(word)
 

@@ -1,4 +1,4 @@
-"""The legend rows of Loco-data (workshop Fig. 4-1): find them and compare them with the columns."""
+"""Finds the legend rows of Loco-data (workshop Fig. 4-1) and compares them with the columns."""
 
 import re
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
 
 
 def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
-    """Find a label in a legend row that does not fit its column.
+    """Return a remark if a label in a legend row does not fit its column.
 
     Angles are read by the order of the columns, not by the legend.
 
@@ -106,5 +106,5 @@ def _is_legend(cells: Sequence[str]) -> bool:
 
 
 def _plain(label: str) -> str:
-    """Normalise a label: people write "R,F", "R.F" and "rf" for the same leg."""
+    """Normalise a label, because people write "R,F", "R.F" and "rf" for the same leg."""
     return "".join(filter(str.isalnum, label)).casefold()

@@ -3,7 +3,7 @@
 from lacoc_shared.gait.tables import Posture
 
 _ROUNDING = 1 + 1e-9
-"""Tolerance for rounding: 24 degrees at 2.4 degrees a tick must take exactly 10 ticks."""
+"""Tolerance for rounding, so that 24 degrees at 2.4 degrees a tick take exactly 10 ticks."""
 
 
 def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:

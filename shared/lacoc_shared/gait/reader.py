@@ -1,4 +1,4 @@
-"""Read the cells of a gait file, and list every mistake in them (rules 2)."""
+"""Reads the cells of a gait file, and lists every mistake in them (rules 2)."""
 
 import math
 import re
@@ -36,12 +36,12 @@ Range = float | Sequence[tuple[float, float]]
 for each joint id."""
 
 MAX_MISTAKES = 1000
-"""Reading stops at this many mistakes: a garbage file has thousands, and a court reads files within
-a beat.
-"""
+"""Reading stops at this many mistakes: a file that is no gait has thousands, and a court reads
+files between its beats."""
 
 _RADIANS = 3.2
-"""A table whose largest angle is at most this [deg] was perhaps meant in radians: half a turn."""
+"""If the largest angle of a table is at most this [deg], the angles were perhaps meant in radians:
+half a turn."""
 
 _POSTURES_HEADER = re.compile(r"num of postures?", re.IGNORECASE)
 
@@ -63,9 +63,10 @@ def read_cells(
     Args:
         rows: the rows in order; blank rows, and empty cells at the end of a row, are skipped.
         file: the file's name, for error messages.
-        legs: the legs of the robot that it must fit; None takes any robot with 4, 6 or 8 legs.
+        legs: the legs of the robot that the gait must fit; None: any robot with 4, 6 or 8 legs.
         range_deg: the range of the angles.
-        headers: the expected first row, for a message about a file that has neither header.
+        headers: the expected first row, for the message if the first row is neither of the two
+            headers.
         notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
@@ -81,7 +82,7 @@ def read_cells(
 
 
 def _largest_deg(table: PostureTable | LocomotionTable) -> float:
-    """Return the largest angle of a gait [deg], without its sign; 0 if there is none."""
+    """Return the largest angle of a gait [deg], without regard to its sign; 0 if it has none."""
     postures = (
         table.postures.values()
         if isinstance(table, PostureTable)
@@ -248,10 +249,10 @@ class _TableReader:
         return LocomotionTable(tuple(sequences))
 
     def _count(self, row: Row, column: int, highest: int, what: Phrase) -> int | None:
-        """Read the cell in a column of a row: a whole number from 1 to `highest`; else None.
+        """Read a whole number from 1 to `highest` in a cell; None if the number is wrong.
 
-        Columns are counted from 1. It is noted as a mistake if the number is wrong, or if a cell
-        after this column is neither empty nor 0.
+        Columns are counted from 1. A mistake is noted if the number is wrong, or if a cell after
+        this column is neither empty nor 0.
         """
         cell = row.cells[column - 1] if len(row.cells) >= column else ""
         if without_zeros(row.cells[column:]):

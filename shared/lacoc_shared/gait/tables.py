@@ -14,7 +14,7 @@ Posture = tuple[float, ...]
 
 JOINTS_PER_LEG = 3
 LEVEL_NAMES = ("Root", "1st", "2nd")
-"""The three joints of a leg, from the body outward (workshop Fig. 4-1)."""
+"""Names of the three joints of a leg, from the body outward (workshop Fig. 4-1)."""
 
 
 class Level(IntEnum):
@@ -51,7 +51,7 @@ class LocomotionTable(msgspec.Struct, frozen=True):
 
 
 class Gait(msgspec.Struct, frozen=True):
-    """Everything that a seat's keys can do: one table or both."""
+    """Everything that the keys of a seat can do: one table or both."""
 
     postures: PostureTable | None = None
     locomotion: LocomotionTable | None = None
@@ -75,7 +75,7 @@ class Gait(msgspec.Struct, frozen=True):
         return tuple(range(len(self.locomotion.sequences))) if self.locomotion else ()
 
     def sequence(self, level: Level, digit: int) -> tuple[Posture, ...] | None:
-        """Return the postures of a key (one at level A); None if the file has no such key."""
+        """Return the postures of a key, one at level A; None if the gait has no such key."""
         if level is Level.POSTURE:
             posture = self.postures.postures.get(digit) if self.postures else None
             return None if posture is None else (posture,)
@@ -85,7 +85,8 @@ class Gait(msgspec.Struct, frozen=True):
 
 
 SAMPLE_KEYS: tuple[tuple[int, ...], ...] = ((0,), (8, 7, 6, 5), (1, 2, 3, 4), (5, 6, 7, 8))
-"""The keys of workshop Fig. 4-2: [0] stand, [1] turn left, [2] forward, [3] turn right."""
+"""The digits of the postures of each key in workshop Fig. 4-2: [0] stand, [1] turn left, [2]
+forward, [3] turn right."""
 
 
 def to_locomotion(table: PostureTable, keys: tuple[tuple[int, ...], ...]) -> LocomotionTable:

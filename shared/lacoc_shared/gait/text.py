@@ -48,8 +48,8 @@ def read_gait(
     Args:
         data: the file, at most 32 KiB, in UTF-8, UTF-16 or Shift-JIS.
         name: the file's name, for error messages.
-        legs: the robot that it must fit: the labels of its legs in order, or their
-            number. None takes a gait for any robot with 4, 6 or 8 legs.
+        legs: the robot that the gait must fit: the labels of its legs in order, or their number.
+            None: any robot with 4, 6 or 8 legs.
         range_deg: range of the angles: one bound for all, or (lowest, highest) of each joint.
         notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
@@ -96,12 +96,12 @@ def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> by
 
 
 class Decoded(NamedTuple):
-    """A text, and how it is encoded in its file."""
+    """A decoded text, and how it is encoded in its file."""
 
     text: str
     encoding: str
     bom: bytes
-    """The file's first bytes, which are no text."""
+    """The byte order mark at the beginning of the file; b"": there is none."""
 
 
 def decoded(data: bytes, name: str, most_bytes: int = MAX_BYTES) -> Decoded:

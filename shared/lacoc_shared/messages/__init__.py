@@ -1,8 +1,8 @@
 """The messages of a court on the wire (docs/protocol.md has them as tables).
 
-They are separate from the court's own types: they are the contract with every other
-program. All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Command` are
-arrays on the wire, because they are sent 50 and 10 times a second; all others are maps.
+They are separate from the types that the court uses inside, because they are the contract with
+every other program. All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Command`
+are arrays on the wire, because they are sent 50 and 10 times a second; all others are maps.
 """
 
 from typing import Annotated, Any
@@ -17,7 +17,7 @@ PROTOCOL = 2
 """Version of this contract; both ends must have the same version."""
 
 MARKER_STATES = ("neutral", "left", "right", "down")
-"""The states of a marker; a frame carries the index in two bits."""
+"""The states of a marker. A frame has the index of a state, in two bits."""
 
 OUTLOOK_MOST_S = 30.0
 """Longest outlook that a referee may ask for [s]."""
@@ -27,20 +27,21 @@ TRY_OUT_TICKS = 3000
 TRY_OUT_ASKED_TICKS = 150
 """Longest part of a try-out in one reply [ticks]."""
 TRY_OUT_KEYS = 64
-"""Most keys of a try-out."""
+"""Most keys of one try-out."""
 
 ROOT_FLOATS = 7
-"""Numbers of a robot's root in `Frame.poses`: x, y, z, then its quaternion w, x, y, z."""
+"""How many numbers of `Frame.poses` describe a robot's root: x, y, z, then its quaternion w, x, y,
+z."""
 
 
 class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
     """The state of a seat at a beat."""
 
     flags: int
-    """`SeatFlag` bits."""
+    """Bits of `SeatFlag`."""
     score: int
     level: int
-    """`Level` of the current command."""
+    """`Level` of the current command, as a number."""
     key: int
     """Digit of the current command."""
     posture: int
@@ -48,39 +49,45 @@ class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
     locked_ticks: int
     """Clock ticks until keys are accepted again after a restart or a freeze; 0: accepted now."""
     applied_seq: int
-    """Sequence number of the seat's newest command that took effect; 0: none yet."""
+    """Sequence number of the seat's newest command that took effect; 0: none has yet."""
     applied_beat: int
     """Beat at which that command took effect."""
     refused_seq: int
-    """Sequence number of the seat's newest command that was refused; 0: none."""
+    """Sequence number of the seat's newest command that was refused; 0: none was."""
     refused_why: int
     """`No` code of that refusal."""
 
 
 class Frame(msgspec.Struct, frozen=True, array_like=True):
-    """The whole match at a beat; complete in itself, so that a latecomer needs only one."""
+    """The whole match at a beat.
+
+    One frame is enough to show it, also to somebody who comes late.
+    """
 
     match: int
     """Number of the match at this court, from 1."""
     beat: int
     """Beat of the match, from 0; one every 20 ms unless the court is late."""
     phase: int
-    """`Phase`."""
+    """`Phase` of the match, as a number."""
     countdown_beats: int
     """Beats until play begins, in COUNTDOWN; else 0."""
     clock_ticks: int
-    """Clock ticks that have been used; may be negative after a referee's correction."""
+    """Ticks of the clock that have been used; after a referee's correction the number may be
+    negative."""
     seats: tuple[SeatFrame, ...]
     """One entry for each seat of the arena, in the arena's order."""
     markers: bytes
-    """Two bits for each marker, the first in the lowest bits of the first byte."""
+    """The state of each marker in two bits; the first marker is in the lowest bits of the first
+    byte."""
     poses: bytes
     """Little-endian float32 for each robot: x, y, z [m, world], quaternion w, x, y, z (body to
     world), then its joint angles [rad] by joint id. Empty before READY."""
     scene: bytes
     """Hash of the scene, 8 bytes; if it changes, clients must fetch the scene again."""
     digest: bytes
-    """Hash chain over the state of physics after every tick so far, 8 bytes; a replay checks it."""
+    """Hash chain over the states of physics after all ticks so far, 8 bytes; a replay compares
+    it."""
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
@@ -89,14 +96,15 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
     session: int
     """Number that the court gave in its reply to the join."""
     seq: int
-    """Sequence number of the command, from 1 for each seat; 0: no key yet, only a sign of life."""
+    """Sequence number of the command, from 1 for each seat; 0: no key was pressed yet, the message
+    is only a sign of life."""
     level: int
     key: int
     """0-9, or `RESTART_KEY` for [x]."""
     match: int
-    """Match of the newest frame that the controller had when it sent this; 0: none yet."""
+    """Match of the newest frame that the player had seen; 0: none yet."""
     seen: int
-    """Beat of that frame; the court computes the link's delay from it."""
+    """Beat of that frame; from it the court computes the link's delay."""
     mac: bytes
     """8 bytes of keyed BLAKE2 over everything above and the seat's key expression."""
 
@@ -120,9 +128,8 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     postures: SentFile | None = None
     """A Loco-data file."""
     locomotion: SentFile | None = None
-    """A LocoTra-data file. With no file at all: the files that the seat has, if the team of this
-    name has it, else the contest's robot with its sample gait.
-    """
+    """A LocoTra-data file. If no file is sent, the files stay that the seat has, if the team of
+    this name has the seat; else the contest's robot and its sample gait are used."""
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):
@@ -130,15 +137,16 @@ class Joined(msgspec.Struct, frozen=True, kw_only=True):
 
     session: int
     secret: bytes
-    """Key for the MACs of this session; 16 bytes."""
+    """Key for the seals of this session, 16 bytes."""
     last_seq: int
-    """The seat's next sequence number is one above this."""
+    """Highest sequence number that the seat has used so far; its next command has this number plus
+    1."""
     notes: tuple[Phrase, ...] = ()
     """Remarks for the contestant (`note.*`)."""
 
 
 class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request to be ready, or no longer ready, or to leave; sealed with the session's secret."""
+    """A request to be ready, or no longer ready, or to leave. The session's secret seals it."""
 
     session: int
     seq: int
@@ -148,7 +156,7 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers after `seq`."""
+        """The numbers that the seal covers, after `seq`."""
         return (int(self.ready),)
 
 
@@ -156,52 +164,52 @@ class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fiel
     """A key of a try-out."""
 
     tick: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
-    """Ticks after the beginning of the try-out."""
+    """Tick of the try-out at which the key is pressed, from 0."""
     level: Annotated[int, msgspec.Meta(ge=0, le=1)]
-    """`Level`."""
+    """`Level` of the key, as a number."""
     key: Annotated[int, msgspec.Meta(ge=0, le=9)]
 
 
 class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A player's question before the match: how would the robot walk, alone, with some keys?
 
-    Sealed as a `SeatRequest`. One that overtakes a `SeatRequest` on the way makes it no old one.
+    It is sealed like a `SeatRequest`. If it overtakes a `SeatRequest` on the way, the court still
+    accepts the `SeatRequest`.
     """
 
     session: int
     seq: int
     drawn: bool
-    """Whether the reply needs the scene."""
+    """Whether the reply must contain the scene."""
     first: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
-    """Tick of the first picture that is wanted."""
+    """Tick of the first picture that is asked for."""
     until: Annotated[int, msgspec.Meta(ge=0, le=TRY_OUT_TICKS)]
-    """No picture is later; at most `TRY_OUT_ASKED_TICKS` after `first`."""
+    """No picture is later than this tick; it may be `TRY_OUT_ASKED_TICKS` after `first` at most."""
     keys: Annotated[tuple[TriedKey, ...], msgspec.Meta(max_length=TRY_OUT_KEYS)]
     """All keys since the try-out began, in the order of their ticks; at most one in a tick."""
     mac: bytes
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers after `seq`."""
+        """The numbers that the seal covers, after `seq`."""
         pressed = [number for key in self.keys for number in (key.tick, key.level, key.key)]
         return (int(self.drawn), self.first, self.until, *pressed)
 
 
 class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
-    """Pictures of a robot that walks alone on the field of its match."""
+    """How a robot walks alone on the field of its match, as pictures."""
 
     scene: bytes
-    """Hash of the field with this robot alone, 8 bytes."""
+    """Hash of the scene with the field and only this robot, 8 bytes."""
     drawn: "Scene | None"
-    """That scene, if it was asked for."""
+    """This scene, if it was asked for; else None."""
     first: int
     """Tick of the first picture."""
     every: int
     """Ticks from one picture to the next."""
     poses: tuple[bytes, ...]
-    """Each picture in the form of `Frame.poses`, of this robot only; fewer than were asked for if
-    physics stopped.
-    """
+    """The pose of this robot in each picture, in the form of `Frame.poses`. There are fewer
+    pictures than were asked for if physics stopped."""
 
 
 class Done(msgspec.Struct, frozen=True):
@@ -215,14 +223,15 @@ class Refusal(msgspec.Struct, frozen=True):
     """The reply to a request that was refused; sent as an error."""
 
     why: Phrase
-    """A whole sentence; its code says which refusal it is."""
+    """Why the request was refused, as a whole sentence; its code says which kind of refusal it
+    is."""
     mistakes: tuple[Mistake, ...] = ()
     again: bool = False
-    """Whether to retry: the request is right, but the court can't take it now."""
+    """Whether to send the request again later: it is right, but the court can't accept it now."""
 
 
 class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request that only shows a referee's token, and decides nothing."""
+    """A request that only shows a referee's token, and makes no decision."""
 
     token: str
 
@@ -243,12 +252,12 @@ class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
 
     beat: int
     event: int | None = None
-    """Number of its event; None for a dry run."""
+    """Number of the event of this decision; None after a dry run."""
     said: Phrase
     """What was done (`decision.*`)."""
     scores: tuple[int, ...]
     changes: tuple[Phrase, ...] = ()
-    """For take-back: the events that vanish or appear (`change.*`)."""
+    """After a take-back: the events that vanish or appear (`change.*`)."""
 
 
 Outcome = Done | DecisionReply | Refusal
@@ -259,7 +268,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     """Something that happened; numbered, and never lost."""
 
     number: int
-    """Number of the event, from 1 in each match."""
+    """Number of the event in its match, from 1."""
     match: int
     beat: int
     clock_ticks: int
@@ -267,7 +276,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True):
     """phase, join, leave, ready, strayed, silent, heard, restart, decision, fault, result, advice,
     or a game's own: flip, capture, strike."""
     said: Phrase
-    """A whole sentence."""
+    """What happened, as a whole sentence."""
     seat: int = -1
     """Index of the seat that the event is about; -1: none."""
     data: dict[str, Any] = {}
@@ -279,18 +288,18 @@ class OutlookRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
 
     token: str
     decision: Decision | None = None
-    """A decision that would be taken before play goes on; None: none."""
+    """A decision that would be made before play goes on; None: no decision."""
     seconds: Annotated[float, msgspec.Meta(gt=0, le=OUTLOOK_MOST_S)] = 10.0
     """How long play would go on [s]."""
 
 
 class Outlook(msgspec.Struct, frozen=True, kw_only=True):
-    """What would happen if play went on, and nobody pressed another key or decided anything."""
+    """What would happen if play went on, without another key or decision."""
 
     beat: int
-    """The match's beat from which play would go on."""
+    """Beat of the match from which play would go on."""
     clock_ticks: int
-    """The clock when play would go on."""
+    """Ticks of the clock when play would go on."""
     before: tuple[int, ...]
     """For each seat the score when play would go on, after the decision."""
     scores: tuple[int, ...]
@@ -300,25 +309,27 @@ class Outlook(msgspec.Struct, frozen=True, kw_only=True):
     phase: int
     """The phase at the end."""
     events: tuple[Event, ...]
-    """What would happen, in order. In the match itself these numbers may go to other events."""
+    """The events that would happen, in order. In the match itself their numbers may belong to other
+    events."""
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
     """A seat: its team, look, robot and keys."""
 
     id: str
-    """The arena's name for the seat: "left"."""
+    """Id of the seat in the arena, such as "left"."""
     team: str = ""
-    """"" while nobody has joined, unless the office assigned the match."""
+    """Name of the team. "": nobody has joined, and the office has not assigned a team."""
     colour: str
-    """#rrggbb"""
+    """Colour of the seat, as "#rrggbb"."""
     pattern: str
-    """Tells the seats apart for people who can't see the colours: plain, stripes or dots."""
+    """Pattern by which people who can't see the colours tell the seats apart: plain, stripes or
+    dots."""
     robot: str = ""
     legs: tuple[str, ...] = ()
-    """Leg labels in leg order; joints are 3 * legs."""
+    """Labels of the legs in leg order. The robot has three joints for each leg."""
     keys: tuple[tuple[int, ...], tuple[int, ...]] = ((), ())
-    """Digits that do something at level A and at level B."""
+    """Digits of the keys that do something, at level A and at level B."""
     postures: tuple[int, ...] = ()
     """Number of postures of each key of level B."""
 
@@ -343,27 +354,28 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     court: str
     match: int
     match_id: str = ""
-    """Names the match's record, and the match in logs."""
+    """Id of the match. Its record is named by it, and logs name the match by it."""
     arena: str
     title: str
     duration_s: float
-    """0: no time limit (practice)."""
+    """Length of the match [s]; 0: it has no time limit (practice)."""
     levels: tuple[int, ...]
-    """`Level`s that are open."""
+    """The `Level`s that are open, as numbers."""
     settings: dict[str, Any]
-    """The arena file as played."""
+    """The arena file as it is played, with the overrides of the contest."""
     seats: tuple[SheetSeat, ...]
     markers: tuple[MarkerInfo, ...]
     scene: bytes
     """Hash of the scene, 8 bytes."""
     call: str = ""
-    """Id of the office's call that is played; "": none, or the court has no office."""
+    """Id of the call with which the office gave this match to the court; "": no call, or the court
+    has no office."""
     fixture: Phrase | None = None
-    """What is played, or that the court waits for the office (`fixture.*`); None: the court has no
-    office."""
+    """Name of the match in its contest, or that the court waits for the office (`fixture.*`); None:
+    the court has no office."""
     rule: Phrase | None = None
-    """What the game is about and how one scores (`rule.*`); None: the arena does not say, or the
-    sheet is of an earlier version."""
+    """What the game is about and how one scores (`rule.*`). None: the arena does not tell this, or
+    the sheet is of an earlier version."""
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
@@ -371,15 +383,16 @@ class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     parent: int
-    """Index of the parent; -1 for the world."""
+    """Index of the parent body; -1: the world."""
     pos: tuple[float, float, float]
     """Position in the parent's frame [m]."""
     quat: tuple[float, float, float, float]
     """Orientation in the parent's frame: w, x, y, z."""
     seat: int = -1
-    """Seat of a robot's root body, whose pose is in the frame; -1 for other bodies."""
+    """Seat of a robot's root body, whose pose is in the frame; -1: another body."""
     joint: int = -1
-    """Joint id: index in the frame's joint angles of that seat; -1: no joint."""
+    """Joint id of this body's hinge: its index in the frame's joint angles of that seat; -1: the
+    body has no hinge."""
     axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     """Hinge axis in this body's frame; the hinge goes through the body's origin."""
 
@@ -391,7 +404,7 @@ class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
     type: str
     """plane, sphere, capsule, cylinder, box or ellipsoid."""
     size: tuple[float, float, float]
-    """MuJoCo's sizes: radii and half lengths [m]."""
+    """Sizes as MuJoCo has them: radii and half lengths [m]."""
     pos: tuple[float, float, float]
     quat: tuple[float, float, float, float]
     rgba: tuple[float, float, float, float]
@@ -400,50 +413,50 @@ class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
     state: int = -1
     """The shape is shown while the marker is in this state; -1: it belongs to no marker."""
     seat: int = -1
-    """Seat whose colour and pattern the shape has; -1: none."""
+    """Seat whose colour and pattern the shape has; -1: the shape has a colour of its own."""
 
 
 class Scene(msgspec.Struct, frozen=True, kw_only=True):
-    """The model for drawing, made from the compiled MuJoCo model."""
+    """The bodies and shapes of a match for drawing, made from the compiled MuJoCo model."""
 
     bodies: tuple[SceneBody, ...]
     geoms: tuple[SceneGeom, ...]
 
 
 class Gains(msgspec.Struct, frozen=True, kw_only=True):
-    """What a robot would gain next, where it is now."""
+    """What a robot would gain next from its present place."""
 
     said: Phrase | None = None
-    """Where its robot comes from and what it can do next, for its player (`gains.*`)."""
+    """For the robot's player: where the robot comes from and what it can do next (`gains.*`)."""
     points: dict[str, int] = {}
     """Points that each marker would bring if the robot went there now, by the marker's name."""
 
 
 class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a seat's link, measured by the court."""
+    """How well a seat's link works now, measured by the court."""
 
     id: str
     joined: bool
     session: int = 0
-    """Number of the session that holds the seat, so that a controller sees whether it is its own;
-    0: none, as after a restart of the court."""
+    """Number of the session that holds the seat, by which a controller sees whether it still holds
+    it; 0: nobody does, as after a restart of the court."""
     heard_ms: float | None
-    """Time since the seat's join or last valid command; None: nothing was heard of it."""
+    """Time since the seat's join or its last valid command [ms]; None: there was neither."""
     commands_hz: float
     refused: dict[str, int]
     """Number of refused messages by reason, a name of `count.*` such as "bad-seal", since another
     team had the seat."""
     round_trip_p50_ms: float | None = None
-    """Time from a frame to the beat that has the seat's answer to it, by the court's clock: the
-    median of the last 10 s; None: not known."""
+    """Time from a frame to the beat that takes the seat's answer to it, by the court's clock: the
+    median of the last 10 s [ms]; None: not known."""
     round_trip_p95_ms: float | None = None
-    """The 95th percentile of the same times."""
+    """The 95th percentile of the same times [ms]."""
     late: int = 0
-    """Commands that came too late for the common delay."""
+    """Number of commands that came too late for the common delay."""
 
 
 class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
-    """The quality of a seat's link during a match."""
+    """How well a seat's link has worked during a match."""
 
     id: str
     silences: int
@@ -453,14 +466,14 @@ class LinkVerdict(msgspec.Struct, frozen=True, kw_only=True):
     expected: int
     """Repeats of the seat's command that were due in PLAYING: ten in a second of wall time."""
     arrived: int
-    """Repeats that arrived."""
+    """Number of these repeats that arrived."""
     refused: dict[str, int]
     """Number of refusals in this match by reason, a name of `count.*`: at the court's doors and by
     the rules."""
     walked_m: float = 0.0
     """How far the robot has walked in PLAYING [m]; sways of less than 10 mm do not count."""
     keys: dict[str, int] = {}
-    """How often each key took effect: level and digit ("B2"), or "x"."""
+    """How often each key took effect, by the key: level and digit ("B2"), or "x"."""
 
 
 class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
@@ -469,11 +482,12 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
     played_beats: int
     """Number of beats of PLAYING; the next three fields are about these beats."""
     real_time_factor: float
-    """Duration of these beats at 20 ms each, divided by the wall time they took; 1 is real time."""
+    """Duration of these beats at 20 ms each, divided by the wall time that they took; 1 is real
+    time."""
     slow_beats: int
     """Beats that began more than 20 ms late."""
     worst_late_ms: float
-    """Largest delay of a beat's beginning."""
+    """Largest delay with which a beat began [ms]."""
     faults: int
     """Number of times that physics stopped."""
     resumptions: int
@@ -491,31 +505,31 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     match: int
     beat: int
     real_time_factor: float
-    """Beats of the last seconds at 20 ms each, divided by their wall time; 1 is real time."""
+    """Duration of the beats of the last seconds at 20 ms each, divided by their wall time; 1 is
+    real time."""
     slow_beats: int
-    """Beats that began more than 20 ms late."""
+    """Number of beats that began more than 20 ms late."""
     worst_late_ms: float
     seats: tuple[SeatHealth, ...]
     dropped: dict[str, int]
-    """Messages that belong to no seat, by reason: a name of `count.*`."""
+    """Number of messages that are of no seat, by reason: a name of `count.*`."""
     decisions: dict[str, Phrase | None]
     """Every decision by name: None if it is legal now, else why not (`why.*`)."""
     verdict: HealthVerdict | None = None
     """How well this match has run; None: not measured."""
     record_trouble: Phrase | None = None
-    """A problem with the disk of the record: why the match does not go on, or another report about
-    that disk (`record.*`). None if there is none."""
+    """A problem with the disk of the record (`record.*`): it may keep the match from going on.
+    None: there is no problem."""
     input_delay_ms: int = 0
-    """Delay from a frame to the effect of a key that answers it, the same for all seats; 0: the
-    contest does not make links equal."""
+    """Common delay: from a frame to the effect of a key that answers it, the same for all seats
+    [ms]. 0: the contest does not make links equal."""
     events: int = 0
     """Number of the newest event: a client that has fewer asks for the rest."""
     sheet: bytes = b""
-    """Hash of the newest sheet: 8 bytes of BLAKE2. A client that has another sheet asks for this
-    one.
-    """
+    """Hash of the newest sheet: 8 bytes of BLAKE2. A client with another sheet requests this
+    one."""
     gains: tuple[Gains, ...] = ()
     """For each seat what its robot would gain next; empty while no robot stands on the field."""
     moves: tuple[tuple[str, ...], ...] = ()
-    """For each seat what its keys of level B do, from key 0 on as far as they were tried: a name of
-    `move.*`, or "" if it is not known."""
+    """For each seat, what its keys of level B do: a name of `move.*` for each key from 0 on, or ""
+    if it is not known yet."""

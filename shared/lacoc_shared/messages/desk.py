@@ -1,7 +1,8 @@
-"""What the pages of an organiser and of teams ask a contest's office (docs/contest.md 12).
+"""The requests of an organiser's and of teams' pages to a contest's office (docs/contest.md 12).
 
-A gateway passes these requests on unread: the office alone looks at their secret. Whoever has the
-organiser's key decides; the event code lets a team apply; a team's token opens its own entry.
+A gateway passes these requests on without reading them: only the office checks their secret. With
+the organiser's key one decides; with the event code a team applies; with its token a team sees and
+changes its own entry.
 """
 
 from typing import Annotated, Literal
@@ -13,18 +14,18 @@ from lacoc_shared.mistakes import Mistake
 from lacoc_shared.words import Phrase
 
 DESK_MAX_BYTES = 98_304
-"""Longest request that is read."""
+"""Longest request that is read [bytes]."""
 REPLY_MAX_BYTES = 2 << 20
-"""Longest answer that is read."""
+"""Longest answer that is read [bytes]."""
 
 PUBLISHED = "published/"
-"""Path of a published contest below the address of the pages."""
+"""Path of a published contest, after the address of the pages."""
 
 TEAM_NAME_MAX = 24
 """Most characters of a team's name."""
 
 Replays = Literal["at-once", "after-stage", "after-contest"]
-"""From when everybody may see the record of a game: at once, or when its stage or the contest is
+"""When everybody may see the record of a game: at once, or when its stage or the contest is
 over."""
 
 _Name = Annotated[str, msgspec.Meta(max_length=64)]
@@ -34,14 +35,14 @@ _Text = Annotated[str, msgspec.Meta(max_length=500)]
 class TeamFiles(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """The files that a team hands in; None for each file that it does not."""
+    """The files that a team hands in; None for a file that it does not hand in."""
 
     robot: SentFile | None = None
     """Robot file; None: the contest's robot."""
     postures: SentFile | None = None
     locomotion: SentFile | None = None
     picture: SentFile | None = None
-    """A picture of the team; None: the one that it has handed in before, if any."""
+    """A picture of the team; None: the picture that it handed in before stays, if there is one."""
 
 
 class DeskRequest(
@@ -52,7 +53,7 @@ class DeskRequest(
     omit_defaults=True,
     tag_field="do",
 ):
-    """What all requests to a desk have."""
+    """The fields that all requests to a desk have."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)] = ""
     """The organiser's key, the event code, or the team's token."""
@@ -62,47 +63,48 @@ class DeskRequest(
 
 
 class LookAtEvent(DeskRequest, frozen=True, kw_only=True, tag="look"):
-    """Ask what is known of the event without a secret."""
+    """Ask for the facts about the event that need no secret."""
 
 
 # With the event code
 
 
 class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
-    """Ask to take part; the organiser decides."""
+    """Apply to take part with a team; the organiser decides."""
 
     team: _Name
     files: TeamFiles
     contact: Annotated[str, msgspec.Meta(max_length=200)] = ""
     """How to reach the team; only the organiser reads it."""
     club: _Name = ""
-    """Its school or club; a stage may draw teams of one club apart."""
+    """The team's school or club; a stage may keep teams of one club apart in its draw."""
 
 
 # With a team's token
 
 
 class ChangeFiles(DeskRequest, frozen=True, kw_only=True, tag="change"):
-    """Hand in other files. When entries are closed, the organiser decides."""
+    """Hand in other files of a team. If entries are closed, the organiser decides about them."""
 
     files: TeamFiles
 
 
 class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
-    """Ask how the team's own entry stands."""
+    """Ask for the state of the team's own entry."""
 
 
 # With the token of a court's referee
 
 
 class CourtDay(DeskRequest, frozen=True, kw_only=True, tag="court_day"):
-    """Ask what comes next at a court, and what a result of its game would change."""
+    """Ask what comes next at a court, and what a certain result of its game would change."""
 
     court: _Name
     scores: tuple[int, int] | None = None
-    """Points of the left and of the right seat with which the game would end; None: do not ask."""
+    """Points of the left and of the right seat with which the game would end; None: do not ask
+    about a result."""
     outcome: Literal["left", "right", "draw"] = "draw"
-    """Who would win, for `scores`."""
+    """Who would win with these `scores`."""
 
 
 # With the organiser's key, or a token of the staff
@@ -112,69 +114,71 @@ class Overview(DeskRequest, frozen=True, kw_only=True, tag="overview"):
     """Ask for everything that the organiser's page shows."""
 
     known: str = ""
-    """Version of the view that the page has; if it is the newest, the answer has no view."""
+    """Version of the view that the page has; if this is the newest, the answer contains no view."""
 
 
 class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
-    """Let teams take part that have applied or had withdrawn, or use files that they sent late."""
+    """Let teams take part that applied or had withdrawn, or accept files that they sent late."""
 
     teams: tuple[_Name, ...]
     reason: _Text = ""
-    """For teams and files that are late; everybody can read it."""
+    """The reason, for teams and files that are late; everybody can read it."""
 
 
 class Decline(DeskRequest, frozen=True, kw_only=True, tag="decline"):
-    """Turn applications down, and forget them."""
+    """Refuse applications, and forget them."""
 
     teams: tuple[_Name, ...]
 
 
 class NewCode(DeskRequest, frozen=True, kw_only=True, tag="new_code"):
-    """Make another event code: nobody can apply with the old one any more."""
+    """Make another event code; from then on nobody can apply with the old one."""
 
 
 class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
-    """Close entries: the office draws and calls the first games."""
+    """Close entries; the office then draws the first stage and calls the first games."""
 
 
 class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):
-    """Draw the stage that waits for the organiser, as the page shows it."""
+    """Make the draw of the stage that waits for the organiser, as the page shows it."""
 
     stage: _Name
     entries: tuple[_Name, ...]
-    """The teams by their seeding, as shown; for "hand" in the order that is wanted. If others would
-    be drawn now, nothing is drawn."""
+    """The teams in the order of their seeding, as the page shows them; for "hand" in the order that
+    the organiser wants. If the office would now draw other teams, nothing is drawn."""
     how: Literal["", "hand", "lot"] = ""
-    """As in the fact: by the ranking before, by hand with a reason, or by lot."""
+    """How the seeding is made, as in the fact `drawn`: by the ranking before, by hand with a
+    reason, or by lot."""
     lot: _Name = ""
-    """What was drawn in front of everybody, for "lot"."""
+    """For "lot": the lot, which was drawn in front of everybody."""
     reason: _Text = ""
 
 
 class Undraw(DeskRequest, frozen=True, kw_only=True, tag="undraw"):
-    """Take the draw of a stage back that nobody has played in."""
+    """Take back the draw of a stage in which nothing has been played."""
 
     stage: _Name
     reason: _Text
     really: bool = False
-    """False: only say what would change."""
+    """Whether to do it; False: only say what would change."""
 
 
 class Substitute(DeskRequest, frozen=True, kw_only=True, tag="substitute"):
-    """Let a team take the place of another one that has not played yet."""
+    """Let a team take the place of a team that has not played yet."""
 
     team: _Name
     substitute: _Name
     reason: _Text
     really: bool = False
-    """False: only say what would change."""
+    """Whether to do it; False: only say what would change."""
 
 
 class PauseContest(DeskRequest, frozen=True, kw_only=True, tag="pause"):
     """Call no game until the contest goes on."""
 
     until_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
-    """It goes on by itself then, in milliseconds since 1970, UTC; 0: when somebody says so."""
+    """Time at which the contest goes on by itself, in milliseconds since 1970 (UTC); 0: it goes on
+    when the organiser says so."""
     reason: _Text = ""
 
 
@@ -190,76 +194,80 @@ class Shift(DeskRequest, frozen=True, kw_only=True, tag="shift"):
 
 
 class Unshift(DeskRequest, frozen=True, kw_only=True, tag="unshift"):
-    """Take the newest shift back."""
+    """Take back the newest shift."""
 
     shift: _Name
-    """Its id, as the page shows it: whoever asks twice takes one shift back."""
+    """Id of the shift, as the page shows it. So the same request, sent twice, takes back only one
+    shift."""
 
 
 class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
-    """Show a line on all pages; "" takes it away."""
+    """Show a line of text on all pages; "" removes it."""
 
     text: Annotated[str, msgspec.Meta(max_length=200)]
 
 
 class Publish(DeskRequest, frozen=True, kw_only=True, tag="publish"):
-    """Publish the contest: write its folder, which the pages serve."""
+    """Publish the contest: write its folder, which the gateway serves."""
 
 
 class Staff(DeskRequest, frozen=True, kw_only=True, tag="staff"):
-    """Give somebody an own link to this page, or take it away; only the organiser may."""
+    """Give a member of the staff a link to this page, or take it away.
+
+    Only the organiser may do so.
+    """
 
     name: _Name
     remove: bool = False
 
 
 class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
-    """Take a team out of the contest."""
+    """Take a team out of the contest: it withdraws or is disqualified."""
 
     team: _Name
     reason: _Text = ""
     disqualify: bool = False
     really: bool = False
-    """False: only say what would change."""
+    """Whether to do it; False: only say what would change."""
 
 
 class SeePicture(DeskRequest, frozen=True, kw_only=True, tag="picture"):
-    """Ask for the newest picture of a team, or take it away."""
+    """Ask for the newest picture of a team, or delete it."""
 
     team: _Name
     remove: bool = False
 
 
 class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
-    """Decide about a match."""
+    """Make a decision about a match."""
 
     kind: Literal["replay", "result", "void", "no-show"]
     pairing: _Name
     game: Annotated[int, msgspec.Meta(ge=1, le=200)] = 1
-    """Number of the game; not for "void" and "no-show"."""
+    """Number of the game in the match; not needed for "void" and "no-show"."""
     team: _Name = ""
-    """The team that did not come; for "no-show"."""
+    """For "no-show": the team that did not come."""
     scores: tuple[int, int] | None = None
-    """Points of the left and of the right seat; for "result"."""
+    """For "result": points of the left and of the right seat."""
     reason: _Text = ""
     really: bool = False
-    """False: only say what would change."""
+    """Whether to do it; False: only say what would change."""
 
 
 class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
-    """Move a match to another court or time; the newest move of a match counts."""
+    """Move a match to another court or time; only the newest move of a match counts."""
 
     pairing: _Name
     court: _Name = ""
-    """"": any court."""
+    """Name of the court; "": any court."""
     before: _Name = ""
-    """Pairing of the match before which it comes; "": as the schedule has it."""
+    """Pairing of the match before which it is to be played; "": in the order of the schedule."""
     not_before_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
-    """In milliseconds since 1970, UTC."""
+    """Earliest time of the match, in milliseconds since 1970 (UTC); 0: at any time."""
 
 
 class Tokens(DeskRequest, frozen=True, kw_only=True, tag="tokens"):
-    """Ask for the tokens of all teams of people and of all referees, to hand out their links."""
+    """Ask for the tokens of all teams of people and of all referees, to give them their links."""
 
 
 OfStaff = (
@@ -283,7 +291,7 @@ OfStaff = (
     | Staff
     | Tokens
 )
-"""What the organiser and the staff may ask; `Staff` only the organiser."""
+"""The requests of the organiser and the staff; `Staff` may be used only by the organiser."""
 AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | OfStaff
 """Every request to the desk."""
 
@@ -292,34 +300,35 @@ AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | OfSt
 
 
 class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """What everybody may know before the first match."""
+    """The facts about an event that everybody may read."""
 
     name: str
     open: bool
     """Whether teams can apply, and change their files."""
     closes_ms: int
-    """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them."""
+    """When entries close, in milliseconds since 1970 (UTC); 0: when the organiser closes them."""
     replays: Replays
-    """From when everybody may see the records of games."""
+    """When everybody may see the records of games."""
     announced: str = ""
-    """The organiser's line to all; "": there is none."""
+    """The organiser's line of text to all; "": there is none."""
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """How a team's own entry stands."""
+    """The state of a team's own entry."""
 
     event: EventInfo
     team: str
     token: str
     """The team's token for the whole contest."""
     state: Literal["waits", "in", "late", "left", "none"]
-    """waits: the organiser has not approved it. in: it takes part. late: it takes part, and the
-    organiser has not approved its newest files. left: it was taken out. none: the team has no
-    entry."""
+    """State of the entry. waits: the organiser has not approved it. in: it takes part. late: it
+    takes part, but the organiser has not approved its newest files. left: it was taken out. none:
+    the team has no entry."""
     files: str = ""
-    """Hash of the files with which it plays, or will play once approved."""
+    """Hash of the files with which the team plays, or will play after approval."""
     at_ms: int = 0
-    """When files that wait were handed in, in milliseconds since 1970, UTC; 0: none wait."""
+    """When files were handed in that wait for approval, in milliseconds since 1970 (UTC); 0: no
+    files wait."""
 
 
 class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -327,25 +336,25 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     state: Literal["refused", "waits", "late", "in", "withdrawn", "disqualified"]
-    """refused: its newest files had mistakes, and it has not entered. withdrawn,
-    disqualified: it was taken out. Others: see `OwnEntry`."""
+    """State of the team. refused: its newest files had mistakes, and it has not entered. withdrawn,
+    disqualified: it was taken out. For the others see `OwnEntry`."""
     replaced_by: str = ""
-    """The team that takes its place, so that it is withdrawn; "": none does."""
+    """The team that took this team's place, so that it is withdrawn; "": no team did."""
     files: str = ""
     bot: str = ""
-    """The bot that plays for it; "": people play."""
+    """Name of the bot that plays for the team; "": people play."""
     picture: bool = False
-    """Whether its newest files have a picture of the team."""
+    """Whether the team's newest files contain a picture."""
     at_ms: int = 0
     mistakes: tuple[Mistake, ...] = ()
-    """What is wrong with the files that it handed in last."""
+    """The mistakes in the files that the team handed in last."""
     contact: str = ""
     club: str = ""
     substitute: bool = False
-    """Whether another team can still take its place: it has not played in a drawn stage."""
+    """Whether another team can still take this team's place: it has not played in a drawn stage."""
     reserve: bool = False
-    """Whether it may take another team's place: it takes part, and has no place of its own in a
-    stage that is played."""
+    """Whether the team may take another team's place: it takes part, but has no place of its own in
+    a stage that is being played."""
 
 
 class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -353,11 +362,11 @@ class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
 
     court: str
     here: bool
-    """Whether it was heard lately."""
+    """Whether the court has been heard lately."""
 
 
 class MatchMove(msgspec.Struct, frozen=True):
-    """How a match was moved: see `Move`."""
+    """How a match was moved; see `Move`."""
 
     court: str
     before: str
@@ -365,27 +374,29 @@ class MatchMove(msgspec.Struct, frozen=True):
 
 
 class Slot(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that is being played or is to come, with its court and its time."""
+    """A match that is being played or will be played, with its court and its time."""
 
     pairing: str
     fixture: Phrase
     teams: tuple[str, str]
-    """Who sits left and right; "": not known yet."""
+    """The left and the right team; "": not known yet."""
     who: tuple[Phrase, Phrase] | None = None
-    """Who plays, as far as that is known: "winner of Semi-final 1"; None: `teams` says it."""
+    """Who plays, as far as it is known, such as "winner of Semi-final 1"; None: `teams` has
+    both."""
     court: str
-    """"": nobody can say, because no court is there."""
+    """Name of the court; "": not known, because no court is running."""
     at_ms: int
-    """When it began, or probably begins; in milliseconds since 1970, UTC. 0: nobody can say."""
+    """When the match began or will probably begin, in milliseconds since 1970 (UTC); 0: not
+    known."""
     running: bool = False
     begun: bool = False
-    """Whether its game at the court has begun; a move no longer changes this game."""
+    """Whether its game at the court has begun; then a move changes nothing for this game."""
     absent: tuple[str, ...] = ()
-    """Teams that have not come to the court, a while after their game was called."""
+    """Teams that have not come to the court some time after their game was called."""
     moved: MatchMove | None = None
-    """How it was moved; None: it was not."""
+    """How the match was moved; None: it was not moved."""
     held: Phrase | None = None
-    """Why a court refused its game; None: none did."""
+    """Why a court refused the game of this match; None: no court did."""
 
 
 class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
@@ -393,17 +404,19 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
 
     stage: str
     title: Phrase
-    """What people call it."""
+    """Name of the stage for people."""
     entries: tuple[str, ...]
-    """Its teams by their seeding, the best first."""
+    """Its teams in the order of their seeding, the best first."""
     why: tuple[Phrase, ...] = ()
-    """Why each of them is in it; (): the stage follows none."""
+    """For each team, why it is in the stage; empty: the stage follows no other one."""
     meet: tuple[tuple[int, int], ...] = ()
-    """Places in the seeding, from 0, whose teams surely meet: in the first round, or in a group."""
+    """Pairs of places in the seeding, from 0, whose teams are sure to meet: in the first round, or
+    in a group."""
     met: tuple[tuple[str, str], ...] = ()
-    """Teams of this stage that have met in the stage before."""
+    """Pairs of teams of this stage that met in the stage before."""
     apart: tuple[str, ...] = ()
-    """An order in which fewer of those meet again; (): there is none."""
+    """An order of the teams in which fewer of these pairs meet again; empty: there is no better
+    order."""
 
 
 class Undrawable(msgspec.Struct, frozen=True, kw_only=True):
@@ -417,9 +430,10 @@ class DayState(msgspec.Struct, frozen=True, kw_only=True):
     """Whether games are called."""
 
     paused: bool
-    """True: not before somebody says so."""
+    """Whether no game is called until the organiser says so."""
     until_ms: int
-    """Not before this time, in milliseconds since 1970, UTC; 0: at any time."""
+    """No game is called before this time, in milliseconds since 1970 (UTC); 0: there is no such
+    time."""
     reason: str
 
 
@@ -427,7 +441,7 @@ class ShiftState(msgspec.Struct, frozen=True, kw_only=True):
     """A shift that can be taken back."""
 
     shift: str
-    """Its id."""
+    """Id of the shift."""
     by_ms: int
 
 
@@ -435,44 +449,46 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     """What the organiser's page shows in addition to the sheet of the contest."""
 
     version: str
-    """Hash of the rest."""
+    """Hash of all other fields."""
     event: EventInfo
     code: str
     """The event code."""
     drawn: bool
-    """Whether a stage is drawn."""
+    """Whether any stage has been drawn."""
     to_draw: ToDraw | None
-    """The stage that waits for the organiser's draw; None: none does."""
+    """The stage that waits for the organiser's draw; None: no stage waits."""
     teams: tuple[TeamRow, ...]
     courts: tuple[CourtRow, ...]
     slots: tuple[Slot, ...]
-    """By court, and by time."""
+    """The matches to come, sorted by court and then by time."""
     day: DayState
     shift: ShiftState | None
-    """The newest shift, while it still changes something; None: there is none."""
+    """The newest shift, as long as it still changes something; None: there is none."""
     announced: str
-    """The line to all; "": there is none."""
+    """The line of text to all; "": there is none."""
     undrawable: Undrawable | None
-    """The newest stage, if nobody has played in it; None: its draw stays."""
+    """The newest stage, if nothing has been played in it; None: no draw can be taken back."""
     published: str
-    """Path of the published contest below the address of the pages; "": it is not published."""
+    """Path of the published contest after the address of the pages; "": the contest is not
+    published."""
     folder: str
-    """Where that is on the disk of the office's machine; "": it is not published."""
+    """The published folder on the disk of the office's machine; "": the contest is not
+    published."""
     staff: tuple[str, ...]
-    """Who has a link with a name."""
+    """Names of the staff who have a link."""
     me: str
-    """The name of whoever asks; "": the organiser."""
+    """Name of the member of the staff who asks; "": it is the organiser."""
 
 
 class Overviewed(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to `Overview`."""
 
     view: OfficeView | None
-    """None: the page has the newest one."""
+    """The view; None: the page has the newest one already."""
 
 
 class Effect(msgspec.Struct, frozen=True, kw_only=True):
-    """What a decision changes, or would change."""
+    """What a decision has changed, or would change."""
 
     lines: tuple[Phrase, ...]
     done: bool
@@ -482,14 +498,15 @@ class CourtPlan(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to `CourtDay`."""
 
     coming: tuple[Slot, ...]
-    """What is probably played next at the court, by time; not the game that is on."""
+    """The games that are probably played next at the court, by time, without the game that is
+    on."""
     changes: tuple[Phrase, ...]
-    """What the result would change in matches and ranks (`decide.*`); empty: there was no result in
-    the request, or the court has no game."""
+    """What the result would change in matches and ranks (`decide.*`); empty: the request has no
+    result, or the court has no game."""
 
 
 class Said(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to a request that was carried out: what was done."""
+    """The answer to a request that was carried out: a sentence about what was done."""
 
     said: tuple[Phrase, ...]
 
@@ -498,32 +515,32 @@ class TeamPicture(msgspec.Struct, frozen=True, kw_only=True):
     """The newest picture of a team."""
 
     webp: bytes
-    """A WebP file; empty: the team has none."""
+    """The picture as a WebP file; empty: the team has no picture."""
 
 
 class OpenSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """A seat of a court in open matches: whoever has its token may sit there."""
+    """An open seat of a court, for friendly matches: whoever has its token may sit there."""
 
     court: str
     seat: str
-    """The arena's name of the seat."""
+    """Id of the seat in its arena."""
     token: str
 
 
 class TokenList(msgspec.Struct, frozen=True, kw_only=True):
-    """The tokens that the organiser hands out."""
+    """The tokens that the organiser gives to people."""
 
     teams: dict[str, str]
-    """Tokens of the teams of people, by their names."""
+    """Tokens of the teams of people, by the names of the teams."""
     referees: dict[str, str]
     """Tokens of the referees, by the names of their courts."""
     seats: tuple[OpenSeat, ...] = ()
-    """The open seats of all courts, if the contest has a stage of open matches."""
+    """The open seats of all courts, if the contest has a stage of friendly matches."""
     staff: dict[str, str] = {}
-    """Tokens of the staff, by their names; only for the organiser."""
+    """Tokens of the staff, by their names; only in an answer to the organiser."""
     contacts: dict[str, str] = {}
-    """How to reach the teams, by their names."""
+    """How to reach each team, by the name of the team."""
 
 
 Answer = EventInfo | OwnEntry | CourtPlan | Overviewed | Effect | Said | TeamPicture | TokenList
-"""Every answer of the desk; which one it is follows from the request."""
+"""All answers of the desk; the request decides which of them comes."""

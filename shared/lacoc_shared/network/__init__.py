@@ -1,1 +1,1 @@
-"""The Zenoh session and its configuration."""
+"""The Zenoh session, its configuration, addresses and certificates."""

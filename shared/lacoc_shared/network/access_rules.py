@@ -1,7 +1,8 @@
-"""Zenoh's access rules, the same for everybody: of a court, of a studio, of an office's desk.
+"""Zenoh's access rules for a court, a studio and an office's desk.
 
-Zenoh gives a court no trustworthy information about a sender, so the rules do the check:
-a message that nobody may send reaches neither the court nor anybody else.
+They are the same for all clients. Zenoh gives a court no trustworthy information about a sender, so
+the rules check only the kind of message: one that no client may send reaches neither the court nor
+another client.
 """
 
 from typing import Any
@@ -9,14 +10,14 @@ from typing import Any
 from lacoc_shared.keyspace import DESK
 
 Rules = dict[str, dict[str, Any]]
-"""Rules by name."""
+"""Rules by their names."""
 
 
 def court_access_control() -> dict[str, Any]:
     """Make Zenoh's access control for a court: anybody may watch, send commands and make requests.
 
-    Tokens and seals show whose these are. Only the court sends frames, events, sheets and health,
-    and answers requests.
+    Tokens and seals show who sent commands and requests. Only the court may send frames, events,
+    sheets and health, and answer requests.
     """
     seen = ["frame", "event", "sheet", "health"]
     asked = ["sheet", "scene", "event", "seat/*/*", "referee/*", "office/*", "outlook", "where"]
@@ -32,7 +33,7 @@ def court_access_control() -> dict[str, Any]:
 
 
 def studio_access_control() -> dict[str, Any]:
-    """Make Zenoh's access control for a studio: anybody may ask it and hear how far a search is."""
+    """Make Zenoh's access control for a studio: anybody may send requests and hear its reports."""
     rules = {
         "studio-to-all": _to_all(),
         "ask": _rule("ingress", ["lacoc/*/studio/ask/*"], ["query"]),
@@ -43,7 +44,7 @@ def studio_access_control() -> dict[str, Any]:
 
 
 def desk_access_control() -> dict[str, Any]:
-    """Make Zenoh's access control for an office's desk: anybody may ask it, and do nothing else."""
+    """Make Zenoh's access control for an office's desk: anybody may send it requests, no more."""
     rules = {"desk-to-all": _to_all(), "ask": _rule("ingress", [DESK], ["query"])}
     return _for_anyone(rules)
 

@@ -1,7 +1,7 @@
-"""Addresses of courts: parse them, and explain why a connection failed.
+"""Addresses of courts: reads them, and explains why a connection failed.
 
-Zenoh reports every failed connection with the same sentence. After a failure this module
-finds the reason with a plain socket, and says what to do (docs/facts.md 4).
+Zenoh reports every failed connection with the same sentence. After a failure this module finds the
+reason with a plain socket, and says what to do (docs/facts.md 4).
 """
 
 import errno
@@ -18,7 +18,8 @@ from lacoc_shared.words import Phrase, say
 DEFAULT_PORT = 7447
 
 ANY_HOST = ("0.0.0.0", "::")
-"""Hosts that stand for every address of this machine: for listening, not for connecting."""
+"""Hosts that mean every address of this machine: one can listen at them, but not connect to
+them."""
 
 _PROTOCOLS = ("tcp", "tls")
 _ADDRESS = re.compile(
@@ -34,7 +35,8 @@ def endpoint(text: str, protocol: str = "tcp") -> str:
 
     Args:
         text: the address as a person wrote it.
-        protocol: the protocol if it names none: "tcp", or "tls" for a court with a certificate.
+        protocol: the protocol for an address that names none: "tcp", or "tls" for a court with a
+            certificate.
 
     Raises:
         UserError: if it is not an address.
@@ -53,22 +55,22 @@ def host(one: str) -> str:
 
 
 def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
-    """Return each of `these` that collides with one of `others`: no machine can listen on both."""
+    """Return those of `these` that collide with one of `others`: no machine can listen at both."""
     return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
 
 
 def free_beside(one: str, taken: Sequence[str]) -> str:
-    """Return `one` with the first port, from 7447 on, that no address in `taken` has."""
+    """Return an address with the first port, from 7447 on, that no address in `taken` has."""
     ports = {_split(other)[1] for other in taken}
     free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
     return f"{one.rpartition(':')[0]}:{free}"
 
 
 def check_protocols(endpoints: Sequence[str], *, encrypted: bool) -> None:
-    """Check that a court with a certificate listens only at encrypted addresses, others at none.
+    """Check the protocols: a court with a certificate listens with TLS only, others without it.
 
     Raises:
-        UserError: if one is wrong.
+        UserError: if an address is wrong.
     """
     for one in endpoints:
         protocol, _, place = one.partition("/")
@@ -79,7 +81,10 @@ def check_protocols(endpoints: Sequence[str], *, encrypted: bool) -> None:
 
 
 def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
-    """Say which name is unknown, if every complete address has an unknown name; else None."""
+    """Return which host name is unknown, if all of these addresses have unknown names.
+
+    Else None.
+    """
     unknown = [host for host, port in map(_split, endpoints) if not _resolves(host, port)]
     if unknown and len(unknown) == len(endpoints):
         return say("connect.name-unknown", name=unknown[0])
@@ -87,18 +92,22 @@ def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
 
 
 def why_not_connected(endpoints: Sequence[str], authority: str = "") -> Phrase:
-    """Say why none of these addresses could be connected, one sentence for each.
+    """Return why no connection to these addresses could be opened, in one sentence for each.
 
     Args:
         endpoints: complete addresses.
-        authority: certificate (PEM) of a private authority; "": only public ones are known.
+        authority: certificate (PEM) of a private authority; "": only public authorities are
+            trusted.
     """
     reasons = [_why_not_connected(one, authority) for one in endpoints]
     return reasons[0] if len(reasons) == 1 else say("plain.sentences", sentences=reasons)
 
 
 def is_open(one: str, timeout_s: float = 0.5) -> bool:
-    """Return whether something listens at a complete address; much faster than a failed session."""
+    """Return whether a program listens at a complete address.
+
+    Much faster than to open a session.
+    """
     try:
         with socket.create_connection(_split(one), timeout=timeout_s):
             return True
@@ -118,11 +127,11 @@ def check_free(endpoints: Sequence[str]) -> None:
 
 
 def why_not_listening(endpoints: Sequence[str], error: Exception) -> Phrase:
-    """Say why it was not possible to listen on these addresses.
+    """Return why it was not possible to listen at these addresses.
 
     Args:
         endpoints: complete addresses.
-        error: the failure; used if a plain socket can listen on all of them.
+        error: Zenoh's own error; it is shown if a plain socket can listen at all of them.
     """
     try:
         check_free(endpoints)
@@ -163,7 +172,7 @@ def _why_not_connected(one: str, authority: str) -> Phrase:
 
 
 def _why_not_let_in(one: str, probe: socket.socket, authority: str) -> Phrase:
-    """Say why a court that answers did not let a client in.
+    """Return why a court that can be reached did not let a client in.
 
     Args:
         one: the court's complete address.
@@ -230,17 +239,20 @@ def _why_not_listening(one: str) -> Phrase | None:
 
 
 def own_address() -> str:
-    """Return this machine's IP address in its network; 127.0.0.1 if it is in none."""
+    """Return this machine's IP address in its network; 127.0.0.1 if it has no network."""
     return _sender_to("192.0.2.1") or "127.0.0.1"
 
 
 def is_own(name: str) -> bool:
-    """Return whether a host is an address of this machine: what is sent there does not leave it."""
+    """Return whether a host is this machine, so that a message to it does not leave the machine."""
     return is_loopback(name) or (is_number(name) and _sender_to(name) == name)
 
 
 def _sender_to(number: str) -> str:
-    """Return this machine's address on the way to an IP address; "" if there is no way."""
+    """Return the address from which this machine sends to an IP address.
+
+    "" if it can't reach it.
+    """
     family = socket.AF_INET6 if ":" in number else socket.AF_INET
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         try:

@@ -1,4 +1,4 @@
-"""A rate limit: a flood of messages never costs more than a fixed amount."""
+"""A rate limit, so that a flood of messages never costs more than a fixed amount of work."""
 
 
 class Allowance:

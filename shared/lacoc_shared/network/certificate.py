@@ -1,4 +1,7 @@
-"""The certificate with which a program proves its name; it can be renewed meanwhile."""
+"""The certificate with which a program proves its name.
+
+It can be renewed while the program runs.
+"""
 
 import hashlib
 import ssl
@@ -13,18 +16,18 @@ class Pair(NamedTuple):
     """The files of a certificate and its key (PEM)."""
 
     certificate: Path
-    """The certificate, with those between it and an authority."""
+    """The certificate file, with the certificates between it and an authority."""
     key: Path
 
 
 class Certificate:
-    """A certificate and its key, as a TLS context that takes newer ones.
+    """A certificate and its key as a TLS context, which can read renewed files.
 
     Args:
-        pair: their files.
+        pair: the files of certificate and key.
 
     Raises:
-        UserError: if they can't be read, or do not belong together.
+        UserError: if they can't be read, or do not fit together.
     """
 
     def __init__(self, pair: Pair) -> None:
@@ -36,11 +39,11 @@ class Certificate:
     def renew(self) -> bool:
         """Read the files again if they have changed; return whether they were read.
 
-        Connections that are open go on; the next one gets the new certificate.
+        Open connections go on; new connections get the new certificate.
 
         Raises:
-            UserError: if the new files can't be read, or do not belong together; the certificate
-                stays as it was. This is said once, until the files change again.
+            UserError: if the new files can't be read, or do not fit together. Then the old
+                certificate stays, and the error is raised only once, until the files change again.
         """
         versions = self._versions()
         if versions == self._seen:
@@ -62,7 +65,7 @@ class Certificate:
         raise UserError(say("public.wrong-certificate", files=names, why=why))
 
     def _versions(self) -> list[tuple[int, int]]:
-        """Return times and sizes of the files; zeros for one that is missing."""
+        """Return times and sizes of the files; zeros for a file that is missing."""
         found = []
         for file in self._files:
             try:
@@ -77,6 +80,6 @@ def fingerprint(certificate: str) -> str:
     """Return the fingerprint of a certificate (PEM): SHA-256, hexadecimal.
 
     Raises:
-        ValueError: if it is none.
+        ValueError: if it is not a certificate.
     """
     return hashlib.sha256(ssl.PEM_cert_to_DER_cert(certificate)).hexdigest()

@@ -1,8 +1,8 @@
 """Zenoh's configuration for courts and for everyone else, with a reason for each entry.
 
 Some of Zenoh's defaults are dangerous for a public court: shared memory fails at 351 clients,
-messages may have any size, a send may block, and peers bypass the access rules. Only this
-module changes them.
+messages may have any size, a send may block, and peers bypass the access rules. Only this module
+sets them.
 """
 
 import base64
@@ -41,7 +41,8 @@ _HEADERS_BYTES = 2048
 # Clients receive scenes and trials, which are larger than what a court receives.
 _CLIENT_MAX_BYTES = TRIAL_REPLY_MAX_BYTES + _HEADERS_BYTES
 _ASKED_MAX_BYTES = 1 << 20
-"""Largest request that reaches a studio: much more than it reads, so that it can say so."""
+"""Largest request that reaches a studio [bytes]. It is much larger than a studio reads, so that the
+studio can answer that a request is too large."""
 _LEASE_MS = 3000
 
 
@@ -54,7 +55,8 @@ def court_config(
 
     Args:
         listen: complete addresses.
-        certificate: what proves the court's name; None: nothing is encrypted.
+        certificate: the certificate with which the court proves its name; None: nothing is
+            encrypted.
         office: whether an office may assign matches; its requests are larger than all others.
     """
     largest = ASSIGN_MAX_BYTES if office else JOIN_MAX_BYTES
@@ -94,7 +96,7 @@ def studio_config(listen: Sequence[str]) -> Config:
 
 
 def desk_config(listen: Sequence[str]) -> Config:
-    """Make the configuration of an office's desk: a studio's, but with the access rules of a desk.
+    """Make the configuration of an office's desk: a studio's, with the access rules of a desk.
 
     Args:
         listen: complete addresses.
@@ -108,8 +110,8 @@ def client_config(connect: Sequence[str], timeout_s: float, authority: str = "")
     Args:
         connect: complete addresses; the first that answers is used.
         timeout_s: time limit of the first connection; later ones are tried forever.
-        authority: certificate (PEM) of a private authority, which is trusted besides the public
-            ones.
+        authority: certificate (PEM) of a private authority, which is trusted in addition to the
+            public ones.
     """
     return {
         **_common("client"),
@@ -144,9 +146,9 @@ def _court_tls(certificate: Pair | None) -> Config:
 
 
 def _checked(endpoint: str) -> str:
-    """Return an endpoint with which Zenoh checks the name of a court, unless it is at this machine.
+    """Return an endpoint that makes Zenoh check the court's name, unless it is this machine.
 
-    What is sent there leaves no machine, and a public certificate names no 127.0.0.1.
+    A message to this machine leaves no machine, and no public certificate is for 127.0.0.1.
     """
     here = endpoint.startswith("tls/") and address.is_own(address.host(endpoint))
     return f"{endpoint}#verify_name_on_connect=false" if here else endpoint

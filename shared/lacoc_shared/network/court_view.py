@@ -1,7 +1,7 @@
-"""Keeps what a court has sent, and knows what has not arrived. No I/O, no clock.
+"""Keeps what a court has sent, and finds out what has not arrived. No I/O, no clock.
 
-A spectator and a gateway each hold a `CourtView`: they pass it what arrives, and ask the court for
-what is missing.
+A spectator and a gateway each have a `CourtView`. They give it the messages that arrive, and
+request from the court those that it lacks.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ class _SheetHead(msgspec.Struct):
 
 
 class Told(msgspec.Struct):
-    """The fields of `Health` that tell what a court has sent."""
+    """The fields of `Health` that say what a court has sent."""
 
     match: int
     beat: int
@@ -37,8 +37,8 @@ class Told(msgspec.Struct):
 class CourtView(Generic[T]):
     """The newest sheet, scene and log of a court.
 
-    Everything it takes comes from the network: each `take_...` raises `BadMessage` if the bytes
-    can't be decoded, and changes nothing then.
+    All bytes come from the network: if they can't be decoded, `take_...` raises `BadMessage` and
+    changes nothing.
 
     Args:
         keep: takes an event and its bytes; returns what is kept in `log`.
@@ -51,11 +51,12 @@ class CourtView(Generic[T]):
         self.sheet: bytes | None = None
         """The newest sheet in this version of the protocol."""
         self.scene: bytes | None = None
-        """The newest scene that belongs to a frame."""
+        """The newest scene. It belonged to the newest frame when it arrived."""
         self.match_id = ""
-        """Id of the match; it names the record."""
+        """Id of the match; its record has this name."""
         self.other_version: int | None = None
-        """The court's version of the protocol, if it is another; 0: its sheet can't be read."""
+        """The court's version of the protocol if it differs from this program's. 0: it differs, but
+        the sheet can't be read; None: it is the same."""
         self._sheet_hash = self._scene_hash = b""
         self._frame_scene = self._sheet_scene = b""
         """Hash of the newest frame's scene, and of the sheet's."""
@@ -64,12 +65,12 @@ class CourtView(Generic[T]):
 
     @property
     def lacks_events(self) -> bool:
-        """True if the court has sent an event that is not here."""
+        """True if the court has sent an event that did not arrive here."""
         return self.log.differs(self._told.match, self._told.beat, self._told.events)
 
     @property
     def lacks_scene(self) -> bool:
-        """True if the scene here is not the newest frame's scene."""
+        """True if the scene here is not that of the newest frame."""
         return self._frame_scene != self._scene_hash
 
     @property
@@ -79,7 +80,7 @@ class CourtView(Generic[T]):
 
     @property
     def has_older_sheet(self) -> bool:
-        """True if the court said that its newest sheet is not the one here."""
+        """True if the court has said that its newest sheet is another one than the sheet here."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property
@@ -88,7 +89,7 @@ class CourtView(Generic[T]):
         return self._frame_scene == self._sheet_scene
 
     def doubt(self) -> None:
-        """Note that a message can't be decoded; the sheet will tell the court's version."""
+        """Note that a message can't be decoded; the sheet will show the court's version."""
         self._doubt = True
 
     def refuse_sheet(self) -> None:
@@ -104,20 +105,24 @@ class CourtView(Generic[T]):
         self._frame_scene = scene
 
     def see_health(self, told: Told) -> None:
-        """Note what the court says it has sent."""
+        """Note what the court says that it has sent.
+
+        Args:
+            told: the fields of the court's health.
+        """
         self._told = told
 
     def add_event(self, event: Event, payload: bytes) -> bool:
-        """Take in an event; return whether it is new."""
+        """Add an event; return whether it is new."""
         return self.log.add(event, self._keep(event, payload))
 
     def take_log(self, payload: bytes) -> list[Event]:
-        """Take in the court's list of events; return the new ones in order."""
+        """Replace the events by the court's list; return the new ones in order."""
         events = decode(payload, tuple[Event, ...], MAX_BYTES)
         return self.log.restore([(event, self._keep(event, encode(event))) for event in events])
 
     def take_sheet(self, payload: bytes) -> bool:
-        """Take in a sheet; return whether it is new and of this version of the protocol."""
+        """Keep a sheet; return whether it is new and of this version of the protocol."""
         found = decode(payload, _SheetHead, MAX_BYTES)
         self._doubt = False
         self._sheet_scene, self.match_id = found.scene, found.match_id
@@ -129,7 +134,7 @@ class CourtView(Generic[T]):
         return True
 
     def take_scene(self, payload: bytes) -> bool:
-        """Take in a scene; return whether it is new and belongs to the newest frame."""
+        """Keep a scene; return whether it is new and belongs to the newest frame."""
         found = message_hash(payload)
         if found != self._frame_scene or found == self._scene_hash:
             return False

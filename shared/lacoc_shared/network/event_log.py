@@ -1,4 +1,4 @@
-"""The events of one match, in order, from a stream that may begin again."""
+"""The events of one match, in order, although the court may restart and send some of them again."""
 
 from collections.abc import Iterator, Sequence
 from typing import Generic, TypeVar
@@ -11,10 +11,10 @@ T = TypeVar("T")
 
 
 class EventLog(Generic[T]):
-    """Keeps something for each event: the event itself, or its bytes.
+    """Keeps one object for each event: the event itself, or its bytes.
 
-    Events that a restarted court sends again are not new. Events come in order. So if one differs
-    from the known event with its number, events before it stay valid and later ones are dropped.
+    An event that a restarted court sends again is not new. If an event differs from the known event
+    with its number, earlier events stay valid and later ones are dropped.
     """
 
     def __init__(self) -> None:
@@ -28,13 +28,13 @@ class EventLog(Generic[T]):
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Return whether the court's log differs from this one: then something did not arrive.
+        """Return whether events are missing here, or differ from those of the court.
 
         Args:
             match: number of the open match, from the court's health.
             beat: beat of that health.
             number: number of the newest event at that beat, counted from 1 without a gap; 0: the
-                health does not say.
+                health does not have it.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:
@@ -47,10 +47,10 @@ class EventLog(Generic[T]):
         return newest.number < number or (newest.number > number and not came_later)
 
     def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
-        """Replace what is known with the court's list of events.
+        """Replace all known events with the court's list of events.
 
         Returns:
-            The events that were not known, in order.
+            The events of the list that were not known, in order.
         """
         before, self._known = self._known, {event.number: (event, kept) for event, kept in events}
         self._first = events[0][0].number if events else 1
@@ -59,7 +59,7 @@ class EventLog(Generic[T]):
         return new
 
     def add(self, event: Event, kept: T) -> bool:
-        """Take in an event; return False if it was known."""
+        """Add an event; return False if it was known already."""
         known = self._known.get(event.number)
         if known is not None and known[0] == event:
             return False

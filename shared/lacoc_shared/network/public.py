@@ -1,7 +1,7 @@
-"""The address at which everybody opens the pages, and what proves its name.
+"""The address at which everybody opens the pages, and the certificate for it.
 
-Pages are served at a port of this machine. Others may open them at another address: a domain name
-that leads here, or the address of a proxy (docs/online.md).
+A gateway serves pages at a port of its machine. Others may open them at another address: a domain
+name that leads there, or the address of a proxy (docs/online.md).
 """
 
 import ipaddress
@@ -26,21 +26,22 @@ _ADDRESS = re.compile(
 
 
 class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
-    """How others reach the pages."""
+    """The address at which others reach the pages, with certificate and proxies."""
 
     pages: str = ""
     """Address of the pages without a slash at its end, such as "https://uni.example/lacoc"; "": the
     address of this machine.
     """
     certificate: Path | None = None
-    """Certificate of pages and courts (PEM, with those between it and an authority); None: they are
-    not encrypted."""
+    """Certificate of pages and courts (PEM, with those between it and an authority); None: nothing
+    is encrypted."""
     private_key: Path | None = None
     """The certificate's key (PEM)."""
     authority: Path | None = None
-    """Certificate (PEM) of the private authority that issued it; None: a public one did."""
+    """Certificate (PEM) of the private authority that signed it; None: a public authority did."""
     proxies: tuple[str, ...] = ()
-    """Addresses or networks of proxies that say truly who asks, in `X-Forwarded-For`."""
+    """Addresses or networks of proxies whose `X-Forwarded-For` is believed: it says which machine
+    asks."""
 
     @classmethod
     def of(
@@ -51,10 +52,10 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         proxies: Iterable[str] = (),
         authority: Path | None = None,
     ) -> Self:
-        """Make a public address; arguments as its attributes, but not checked yet.
+        """Make a public address from its attributes, after checking them.
 
         Raises:
-            UserError: if something is wrong; the message names everything.
+            UserError: if something is wrong; the message names all mistakes.
         """
         found, address = Gathered(), ""
         networks: tuple[str, ...] = ()
@@ -79,22 +80,22 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def host(self) -> str:
-        """The host of the pages in small letters; "" if there is no address."""
+        """Host of the pages in small letters; "": the pages have no address of their own."""
         return self._parts.hostname or ""
 
     @property
     def path(self) -> str:
-        """The path below which the pages are, such as "/lacoc"; "" if they are at the top."""
+        """Path below which the pages are, such as "/lacoc"; "": they are at the top."""
         return self._parts.path
 
     @property
     def origin(self) -> str:
-        """What browsers give as the origin of the pages; "" if there is no address."""
+        """Origin of the pages, as browsers send it; "": the pages have no address of their own."""
         return f"{self._parts.scheme}://{self._parts.netloc}" if self.pages else ""
 
     @property
     def scheme(self) -> str:
-        """The scheme of the port's own address."""
+        """Scheme of the gateway's own port: "https" with a certificate, else "http"."""
         return "http" if self.certificate is None else "https"
 
     @property
@@ -111,7 +112,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def fingerprint(self) -> str:
-        """Fingerprint of the private authority, for links; "": there is none.
+        """Fingerprint of the private authority, for links; "": there is no private authority.
 
         Raises:
             UserError: if its certificate can't be read, or is damaged.
@@ -124,7 +125,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
             raise UserError(say("public.no-authority", file=str(self.authority), why=why)) from None
 
     def read_authority(self) -> str:
-        """Return the certificate (PEM) of the private authority; "": there is none.
+        """Return the certificate (PEM) of the private authority; "": there is no private authority.
 
         Raises:
             UserError: if it can't be read.
@@ -143,14 +144,14 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def is_loopback(host: str) -> bool:
-    """Return whether a host means the machine itself."""
+    """Return whether a host is this machine itself, such as "localhost" or 127.0.0.1."""
     if not is_number(host):
         return host.lower() == "localhost"
     return ipaddress.ip_address(host).is_loopback
 
 
 def is_proxy(machine: str, proxies: Sequence[str] | str | None) -> bool:
-    """Return whether an address belongs to one of the proxies, as `PublicAddress.proxies`."""
+    """Return whether an address is that of a proxy, or in a network of proxies."""
     if not proxies or not is_number(machine):
         return False
     found = ipaddress.ip_address(machine)
@@ -158,7 +159,7 @@ def is_proxy(machine: str, proxies: Sequence[str] | str | None) -> bool:
 
 
 def _address(pages: str) -> str:
-    """Return the address without a slash at its end, host and scheme in small letters."""
+    """Return the pages' address without a slash at its end; host and scheme in small letters."""
     if not pages.strip():
         return ""
     match = _ADDRESS.fullmatch(pages.strip())

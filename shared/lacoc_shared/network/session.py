@@ -1,9 +1,8 @@
 """The only access to Zenoh: courts and clients exchange bytes here, with typed errors.
 
-A court polls: its subscribers and queryables are ring buffers that it empties once a
-beat. So only the court's own thread runs its code, and the court decides the order. A
-client may wait: Zenoh's receiving thread fills its mailboxes. No other module imports
-zenoh.
+A court polls: its subscribers and queryables are ring buffers that it empties once a beat. So all
+of the court's code runs on its own thread, in an order that the court decides. A client may wait:
+Zenoh's receiving thread puts messages into its mailboxes. No other module imports zenoh.
 """
 
 import atexit
@@ -27,23 +26,24 @@ from lacoc_shared.network import config as network_config
 from lacoc_shared.network.certificate import Pair
 
 _OTHER_FILES = 200
-"""Files that a court's process opens besides one for each session: records, modules, Zenoh's."""
+"""How many files a court's process opens besides one for each session: records, modules, Zenoh's
+own."""
 
 
 class NotConnected(UserError):
-    """There is no connection now; there may be one later."""
+    """There is no connection now, but there may be one later."""
 
 
 class NoReply(Exception):
-    """Nobody answered: there is no such court, asking is not allowed, or it took too long."""
+    """Nobody answered: there is no such court, the request is not allowed, or time was up."""
 
 
 class TooLate(NoReply):
-    """The other end did not answer in time; it may still have done what was asked."""
+    """The other end did not answer in time; it may still have done what it was asked to do."""
 
 
 class Refused(Exception):
-    """The answer was an error; `payload` holds its content."""
+    """The answer was an error; `payload` has its bytes."""
 
     def __init__(self, payload: bytes) -> None:
         super().__init__(f"refused with {len(payload)} bytes")
@@ -51,7 +51,7 @@ class Refused(Exception):
 
 
 class Publisher:
-    """Sends bytes under one key expression; a receiver that is too slow misses some."""
+    """Sends bytes under one key expression; a receiver that is too slow loses some of them."""
 
     def __init__(self, publisher: zenoh.Publisher) -> None:
         self._publisher = publisher
@@ -97,7 +97,7 @@ class Mailbox:
                 self.subscriber.undeclare()  # type: ignore[no-untyped-call]
 
     def deliver(self, sample: zenoh.Sample) -> None:
-        """Store a message; runs on Zenoh's thread."""
+        """Store a message; called on Zenoh's thread."""
         self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
         self._arrived.set()
         if self._notify is not None:
@@ -108,7 +108,7 @@ class Mailbox:
         return self._mails.popleft() if self._mails else None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until there is a message; False if none came in time."""
+        """Wait until there is a message; return False if none came in time."""
         self._arrived.clear()
         return bool(self._mails) or self._arrived.wait(timeout_s)
 
@@ -124,7 +124,7 @@ class Question:
         """Return the answer, or None if it has not come yet; never blocks.
 
         Raises:
-            NoReply: see `Session.ask`.
+            NoReply: as in `Session.ask`.
             Refused: if the answer is an error.
         """
         try:
@@ -150,7 +150,10 @@ class Question:
 
 
 class Request:
-    """A request that waits for its answer; if it gets none, the sender sees `NoReply`."""
+    """A request that came in and waits for its answer.
+
+    If it gets none, the sender gets `NoReply`.
+    """
 
     def __init__(self, query: zenoh.Query) -> None:
         self._query = query
@@ -190,7 +193,7 @@ class Session:
     def __init__(self, session: zenoh.Session, endpoints: Sequence[str]) -> None:
         self._session = session
         self.endpoints = tuple(endpoints)
-        """The complete addresses that it was opened with."""
+        """The complete addresses with which it was opened."""
         self._announcements: list[zenoh.LivelinessToken] = []
         # Zenoh's threads must end before the interpreter does, even if the program ends by an
         # exception outside any `with`.
@@ -205,7 +208,7 @@ class Session:
     def close(self) -> None:
         """Close the connection and everything that was declared on it.
 
-        This takes ten seconds if another machine's cable was pulled a moment ago.
+        This takes ten seconds if the cable of another machine was pulled a moment ago.
         """
         atexit.unregister(self.close)
         if not self._session.is_closed():
@@ -213,7 +216,7 @@ class Session:
                 self._session.close()  # type: ignore[no-untyped-call]
 
     def publisher(self, key: str) -> Publisher:
-        """Declare that this session sends under a key expression."""
+        """Declare that this session sends under a key expression, and return the publisher."""
         return Publisher(self._session.declare_publisher(key))
 
     def ring(self, key: str, depth: int) -> Ring:
@@ -236,12 +239,15 @@ class Session:
         return mailbox
 
     def desk(self, key: str, depth: int) -> RequestQueue:
-        """Declare that this session answers requests; the newest `depth` are kept for polling."""
+        """Declare that this session answers requests, and polls them.
+
+        The newest `depth` are kept.
+        """
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
         return RequestQueue(self._session.declare_queryable(key, channel))
 
     def answer(self, key: str, take: Callable[[Request], None]) -> None:
-        """Declare that this session answers requests, and get each of them as it comes.
+        """Declare that this session answers requests, and takes each one when it comes.
 
         Args:
             key: key expression.
@@ -265,28 +271,29 @@ class Session:
 
         Raises:
             TooLate: if no answer came in time.
-            NoReply: if there was nobody to ask (or nobody allowed to answer), or the link broke.
+            NoReply: if nobody receives such requests (or nobody who may answer), or the connection
+                broke.
             Refused: if the answer is an error.
         """
         return self.question(key, payload, timeout_s).wait()
 
     def question(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Question:
-        """Send a request; the caller can poll for its answer or wait."""
+        """Send a request, and return it; the caller can poll or wait for the answer."""
         replies = self._session.get(
             key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
         return Question(key, replies)
 
     def routers(self) -> tuple[str, ...]:
-        """Return the identities of the courts' sessions that this session is connected to now."""
+        """Return the Zenoh ids of the sessions of courts to which this session is connected now."""
         return tuple(sorted(map(str, self._session.info.routers_zid())))
 
     def announce(self, key: str) -> None:
-        """Show other sessions that this one is alive, until it closes."""
+        """Announce a key expression to other sessions until this session closes."""
         self._announcements.append(self._session.liveliness().declare_token(key))
 
     def present(self, key: str, timeout_s: float = 1.0) -> tuple[str, ...]:
-        """Return the key expressions of all live announcements under a key expression, sorted."""
+        """Return all key expressions that are announced now and match a key expression, sorted."""
         replies = self._session.liveliness().get(key, timeout=timeout_s)
         return tuple(sorted(str(r.ok.key_expr) for r in replies if r.ok is not None))
 
@@ -306,12 +313,13 @@ def open_court(
     """Open a court's session: the router to which everyone else connects.
 
     Args:
-        listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
-        certificate: what proves the court's name; None: nothing is encrypted.
+        listen: addresses to listen on; port 0 chooses a free port (see `Session.locators`).
+        certificate: the certificate with which the court proves its name; None: nothing is
+            encrypted.
         office: whether an office may assign matches to the court.
 
     Raises:
-        UserError: if it can't listen on one of them; the message says why.
+        UserError: if it can't listen at one of the addresses; the message says why.
     """
     os.environ.setdefault("ZENOH_RUNTIME", network_config.RUNTIME_POOLS)
     config = partial(network_config.court_config, certificate=certificate, office=office)
@@ -319,13 +327,13 @@ def open_court(
 
 
 def open_studio(listen: Sequence[str]) -> Session:
-    """Open a studio's session: the router to which those who ask it connect.
+    """Open a studio's session: the router to which its clients connect.
 
     Args:
-        listen: addresses to listen on; port 0 takes a free one (see `Session.locators`).
+        listen: addresses to listen on; port 0 chooses a free port (see `Session.locators`).
 
     Raises:
-        UserError: if it can't listen on one of them; the message says why.
+        UserError: if it can't listen at one of the addresses; the message says why.
     """
     return _listening(listen, network_config.studio_config)
 
@@ -353,13 +361,13 @@ def _listening(
 def open_client(connect: Sequence[str], timeout_s: float = 2.0, authority: str = "") -> Session:
     """Open the session of a controller, referee, spectator or gateway.
 
-    It stays open when the court goes away, and connects again by itself.
+    It stays open when the court ends, and connects again by itself.
 
     Args:
-        connect: addresses of a court; the first that answers is used.
+        connect: addresses of a court; the first one that answers is used.
         timeout_s: how long to try.
-        authority: certificate (PEM) of a private authority, which is trusted besides the public
-            ones.
+        authority: certificate (PEM) of a private authority, which is trusted in addition to the
+            public ones.
 
     Raises:
         NotConnected: if there is no connection; the message says why.
@@ -378,7 +386,7 @@ def open_client(connect: Sequence[str], timeout_s: float = 2.0, authority: str =
 
 
 def _allow_files(count: int) -> None:
-    """Raise this process's limit of open files, often 1024, to `count` or as far as allowed."""
+    """Raise this process's limit of open files (often 1024) to `count`, or as far as allowed."""
     if sys.platform == "win32":  # it has no such limit
         return
     import resource

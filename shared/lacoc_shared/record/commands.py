@@ -123,8 +123,8 @@ def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
     """Make a file from a record.
 
     Raises:
-        UserError: if it can't be made, for example because messages of the record contradict
-            each other: the record may come from anywhere.
+        UserError: if it can't be made, for example because messages of the record contradict each
+            other. A record may come from anywhere.
     """
     try:
         return make(record)
@@ -174,7 +174,7 @@ def _summary(record: Record) -> dict[str, Any]:
 
 
 def _keys(record: Record, seat: int) -> dict[str, int]:
-    """Count a seat's keys, find the longest delay added to one, and count the late ones."""
+    """Count a seat's keys and the late ones among them; find the longest delay added to one."""
     inputs = (item for items in record.inputs.values() for item in items)
     keys = [item for item in inputs if isinstance(item, KeySeat) and item.seat == seat]
     return {
@@ -185,7 +185,7 @@ def _keys(record: Record, seat: int) -> dict[str, int]:
 
 
 def _how_it_ran(health: HealthVerdict | None, lost: bool) -> Phrase:
-    """Say how well the match ran."""
+    """Return a sentence about how well the match ran."""
     if health is None:
         return say("info.result-lost") if lost else say("info.not-measured")
     measured = say(

@@ -1,7 +1,7 @@
-"""Sentences as earlier versions logged them, so that their records can be compared.
+"""Puts sentences into the form in which earlier versions logged them, to compare old records.
 
-Until decisions said what they changed for whom, a log had only the number of the event that was
-taken back, and no score.
+In old logs, the sentence about a take-back has only the number of the event, and that about a set
+marker has no team; sentences about points have no score.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,12 @@ from lacoc_shared.words import Phrase, say
 
 
 def in_earlier_words(recorded: Sequence[Event], again: Sequence[Event]) -> tuple[Event, ...]:
-    """Return events in the words of the recorded ones, where those have earlier words."""
+    """Return events with earlier sentences where the recorded events have earlier ones.
+
+    Args:
+        recorded: the events of the record.
+        again: the events of its replay.
+    """
     if len(recorded) != len(again):
         return (*again,)
     pairs = zip(recorded, again, strict=True)

@@ -1,4 +1,4 @@
-"""Files of a record: several segments while a match runs, one packed file afterwards."""
+"""The files of a record: several segments while a match runs, one packed file afterwards."""
 
 import os
 import re
@@ -43,7 +43,7 @@ def segment_paths(folder: Path, match_id: str) -> list[Path]:
 
 
 def record_paths(path: Path) -> list[Path]:
-    """Return all files of the record that a path belongs to.
+    """Return the paths of all files of a record.
 
     Args:
         path: a packed file, or any one of the segments of a match.
@@ -60,7 +60,10 @@ def record_paths(path: Path) -> list[Path]:
 
 
 def is_held(path: Path) -> bool:
-    """Say whether a running process writes or packs a segment; True if the segment has gone."""
+    """Return whether a running process is writing or packing a segment.
+
+    True if the file has gone.
+    """
     try:
         with path.open("rb+") as file:
             return not hold(file)
@@ -69,7 +72,7 @@ def is_held(path: Path) -> bool:
 
 
 def sync_folder(folder: Path) -> None:
-    """Write the names in a folder to the disk, so that a new file survives a power cut.
+    """Write the folder's list of names to the disk, so that a new file survives a power cut.
 
     Raises:
         OSError: if the disk refuses. If folders can't be opened (Windows), nothing is done.

@@ -1,4 +1,4 @@
-"""Says in words how a fork was made (`Origin.changes`)."""
+"""Returns sentences about how a fork was made (`Origin.changes`)."""
 
 from collections.abc import Iterator
 
@@ -7,10 +7,11 @@ from lacoc_shared.words import Phrase, say
 
 
 def how(changes: ForkChanges | None) -> Phrase:
-    """Say how a fork was made: who plays its seats, and what was decided.
+    """Return how a fork was made: who steers its robots, and what was decided.
 
     Args:
-        changes: the changes that its record names; None: it names none, because it is older.
+        changes: the changes that the fork's record contains; None: it is an older record and
+            contains none.
     """
     if changes is None:
         return say("forked.unknown")

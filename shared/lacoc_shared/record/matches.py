@@ -1,4 +1,4 @@
-"""Matches of a court in a folder of records: their names, and which of them are over."""
+"""The matches of a court in a folder of records: their names, and which of them are over."""
 
 import glob
 import os
@@ -23,7 +23,7 @@ class MatchName:
     """
 
     opened: str
-    """Wall time, UTC, as in 20260501-100000."""
+    """Time (UTC) when the match was opened, in the form 20260501-100000."""
     number: int
     """Number of the match at its court, from 1."""
     court: str
@@ -33,7 +33,7 @@ class MatchName:
 
     @classmethod
     def new(cls, folder: Path | None, court: str, number: int) -> "MatchName":
-        """Name a match that is opened now.
+        """Make the name of a match that is opened now.
 
         If the folder has a match of this name already, the new match gets a later time. This
         happens when a court is started twice within a second.
@@ -52,7 +52,7 @@ class MatchName:
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
-        """Parse a match id; None if no court made it."""
+        """Read a match id; None if it is not one that a court makes."""
         found = _ID.fullmatch(match_id)
         return found and cls(found["opened"], int(found["number"]), found["court"])
 
@@ -75,7 +75,7 @@ def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:
 
 
 def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
-    """Say whether a match is over: its court ended it, so no court will continue it."""
+    """Return whether a match is over: its court has ended it, so no court will continue it."""
     if not segments:
         return True
     newest = segments[max(segments)]
@@ -83,7 +83,7 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
 
 
 def unpacked(folder: Path, court: str) -> list[str]:
-    """Return the ids of a court's matches that are over and whose segments wait to be packed."""
+    """Return the ids of a court's matches that are over but not packed yet."""
     return [
         str(name)
         for name, segments in court_matches(folder, court).items()
@@ -92,7 +92,7 @@ def unpacked(folder: Path, court: str) -> list[str]:
 
 
 def _is_finished(segment: Path) -> bool:
-    """Say whether a segment has an end; a court that is killed or fails does not write one."""
+    """Return whether a segment has an end; a court that is killed or fails writes none."""
     try:
         with segment.open("rb") as file:
             if file.seek(0, os.SEEK_END) < 2 * len(MCAP0_MAGIC):

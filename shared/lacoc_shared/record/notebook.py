@@ -1,4 +1,4 @@
-"""Read a record as numpy arrays, with units in the names; for notebooks and programs of one's own.
+"""Reads a record as numpy arrays, with units in their names, for notebooks and one's own programs.
 
     from lacoc_shared.record import notebook
 
@@ -7,8 +7,8 @@
     print(left.team, match.score[-1], left.position_m[match.playing])
 
 docs/notebook.md describes every array. The arrays of an object have one entry for each frame, key
-or event, in the order of time; only those about markers have one for each marker. `columns` gives
-them by name, as a table for pandas or a spreadsheet.
+or event, in the order of time; only arrays about markers have one entry for each marker. `columns`
+returns the arrays by name, as a table for pandas or a spreadsheet.
 """
 
 import dataclasses
@@ -39,11 +39,11 @@ Texts = NDArray[np.str_]
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class RobotArrays:
-    """The robot of a seat in each frame; NaN in frames in which no robots are on the field."""
+    """The robot of a seat in each frame; NaN in frames without robots on the field."""
 
     seat: str
     team: str
-    """The team that had the seat last."""
+    """The team that held the seat last."""
     position_m: Floats
     """Centre of the body in the world: x, y, z; (frames, 3)."""
     quaternion: Floats
@@ -61,21 +61,21 @@ class RobotArrays:
 
 @dataclass(frozen=True, repr=False)
 class KeyArrays:
-    """The keys of all seats that the court gave to the match, also those that the match refused."""
+    """The keys of all seats that the court passed to the match, also those that it refused."""
 
     beat: Numbers
-    """Beat that took the key."""
+    """Beat in which the match took the key."""
     time_s: Floats
     seat: Numbers
     """Index of the seat in `MatchArrays.robots`."""
     level: Numbers
-    """0: level A, 1: level B."""
+    """Level of the key; 0: level A, 1: level B."""
     key: Numbers
-    """Digit; 10 is [x]."""
+    """Digit of the key; 10 is [x]."""
     held_ms: Floats
-    """Time by which the court delayed the key, to make the links equal."""
+    """Time for which the court delayed the key, to make the links equal."""
     late_ms: Floats
-    """Time between the end of the common delay and the effect."""
+    """Time between the end of the common delay and the key's effect; 0: in time."""
 
     def __repr__(self) -> str:
         return f"KeyArrays({len(self.beat)} keys)"
@@ -83,18 +83,18 @@ class KeyArrays:
 
 @dataclass(frozen=True, repr=False)
 class EventArrays:
-    """What happened."""
+    """The events of the match."""
 
     number: Numbers
     beat: Numbers
     time_s: Floats
     clock_s: Floats
     kind: Texts
-    """phase, flip, capture, strike, decision and others (docs/protocol.md)."""
+    """Kind of the event: phase, flip, capture, strike, decision and others (docs/protocol.md)."""
     seat: Numbers
     """Index of the seat that the event is about; -1: none."""
     text: Texts
-    """The sentence, in the language of the process."""
+    """The event as a sentence in the language of the process."""
 
     def __repr__(self) -> str:
         return f"EventArrays({len(self.beat)} events)"
@@ -107,32 +107,33 @@ class MatchArrays:
     match_id: str
     arena: str
     beat: Numbers
-    """Beat of each frame. The court leaves out frames while nothing moves, before and after play.
-    """
+    """Beat of each frame. The court records fewer frames while nothing moves, before and after
+    play."""
     time_s: Floats
-    """Time since beat 0."""
+    """Time since beat 0 of the match."""
     clock_s: Floats
     """Time that was used on the clock of play."""
     phase: Texts
-    """Name of the phase: "PLAYING"."""
+    """Name of the phase, such as "PLAYING"."""
     playing: Flags
     """True in the phase PLAYING: `match.time_s[match.playing]`."""
     score: Numbers
-    """Points; (frames, seats)."""
+    """Points of each seat; (frames, seats)."""
     markers: NDArray[np.uint8]
     """State of each marker: 0 neutral, 1 left, 2 right, 3 down; (frames, markers)."""
     marker_names: Texts
-    """(markers,)."""
+    """Name of each marker; (markers,)."""
     marker_position_m: Floats
-    """x, y in the world; (markers, 2)."""
+    """Position of each marker in the world: x, y; (markers, 2)."""
     robots: tuple[RobotArrays, ...]
-    """One for each seat."""
+    """The robots, one for each seat."""
     keys: KeyArrays
     events: EventArrays
     winner: str
-    """Seat id of the official winner, else of the winner by the rules; "draw", "void"; "": none."""
+    """Id of the official winner's seat; if there is none, of the winner by the rules. Also "draw",
+    "void", or "" if there is no winner yet."""
     cut: str
-    """Where the record ends too early, and why; "": it is whole."""
+    """Where the record ends too early, and why; "": the record is complete."""
 
     def __repr__(self) -> str:
         match_id, arena, winner = self.match_id, self.arena, self.winner

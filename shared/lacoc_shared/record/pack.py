@@ -1,7 +1,7 @@
-"""Pack the segments of a finished match into one compressed, indexed file.
+"""Packs the segments of a finished match into one compressed, indexed file.
 
-A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` as another process,
-because packing takes longer than a beat.
+A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` as another process, because
+packing takes longer than a beat.
 """
 
 import os
@@ -25,21 +25,21 @@ from lacoc_shared.record.stream import Stop, walk_bytes
 from lacoc_shared.words import say
 
 CHUNK_BYTES = 1 << 17
-"""Size of a chunk, unpacked: seven seconds of play. Damage loses the match from the damaged chunk
-on. Chunks of this size make a file 1 % larger than those of 1 MiB; with 64 KiB it is 6 %.
-"""
+"""Size of a chunk before compression [bytes]: seven seconds of play. If a file is damaged, the
+match is lost from the damaged chunk on. Chunks of this size make a file 1 % larger than those of 1
+MiB; with 64 KiB it is 6 %."""
 
 Message = tuple[str, int, bytes]
-"""Topic, beat and bytes of a message of a record."""
+"""Topic, beat and bytes of one message of a record."""
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
     """Make one file from the segments of a match, then remove them.
 
     The file gets its name when it is complete and on the disk. If a file of this name exists
-    already, an earlier packing was interrupted, and only check and removal follow. The segments are
-    removed only if the file, read again, has every message in them. Meanwhile all segments are
-    locked.
+    already, an earlier packing was interrupted; then the file is only checked and the segments are
+    removed. The segments are removed only if the file, read again, has every message in them.
+    Meanwhile all segments are locked.
 
     Args:
         segments: the segments in their order.
@@ -104,7 +104,7 @@ def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Pop
     """Pack matches in another process, which goes on when Ctrl-C ends this process.
 
     Raises:
-        OSError: if the system has no room for another process.
+        OSError: if the system can't start another process.
     """
     return subprocess.Popen(
         [sys.executable, "-m", __name__, str(folder), *match_ids],
@@ -117,8 +117,8 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[Message]:
     """Read all messages of a match.
 
     Raises:
-        UserError: if the segments can't be read to their end. They must stay then: removing them
-            would lose what can't be read now.
+        UserError: if the segments can't be read to their end. Then they must not be removed,
+            because the rest of them would be lost.
     """
     messages: list[Message] = []
     record = Record.read(segments, lambda *message: messages.append(message))
@@ -131,7 +131,7 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
     """Pack a copy of a match as far as it is recorded, in another process; the segments stay.
 
     Raises:
-        OSError: if the system has no room for another process.
+        OSError: if the system can't start another process.
     """
     return subprocess.Popen(
         [sys.executable, "-m", __name__, "--copy", str(out), *map(str, segments)],
@@ -141,18 +141,19 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
 
 
 def _compare(wanted: Sequence[Message], wrong: Stop | None, packed: Path) -> None:
-    """Check that removing the segments loses nothing.
+    """Check that the segments can be removed without the loss of a message.
 
-    If an earlier packing was interrupted while it removed segments, only the last segments of
-    the match are left here.
+    If an earlier packing was interrupted while it removed segments, only the last segments of the
+    match are still there.
 
     Args:
         wanted: the messages of the segments.
-        wrong: the fault at the end of the last segment, if any.
+        wrong: the fault at the end of the last segment; None: there is none.
         packed: the packed file.
 
     Raises:
-        UserError: if the packed file lacks anything, or if it or the last segment is damaged.
+        UserError: if a message is not in the packed file, or if this file or the last segment is
+            damaged.
     """
     found, found_wrong = _messages([packed])
     if found_wrong or wrong or found[max(0, len(found) - len(wanted)) :] != wanted:
@@ -210,7 +211,7 @@ def main(folder: str, *match_ids: str) -> int:
 
 
 def _remove(unfinished: Path) -> None:
-    """Remove what was written of a file that could not be finished, as far as the disk allows."""
+    """Remove an unfinished file; do nothing if the disk does not allow it."""
     with suppress(OSError):
         unfinished.unlink(missing_ok=True)
 

@@ -1,6 +1,6 @@
-"""Read and compare records of protocol 1, whose sentences are English texts.
+"""Reads and compares records of protocol 1, whose sentences are English texts.
 
-All other modules know only protocol 2 (docs/decisions/0016-words.md).
+All other modules handle only protocol 2 (docs/decisions/0016-words.md).
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from lacoc_shared.record.schema import Header, Result
 from lacoc_shared.words import Phrase, say
 
 _WORDS = ("words", "changes", "vanished")
-"""Event data that are words, or that only protocol 2 has."""
+"""Entries of an event's data that contain words, or that exist only in protocol 2."""
 
 
 class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
@@ -55,14 +55,20 @@ def fault_of(event: Event) -> Phrase:
 
 
 def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event]) -> bool:
-    """Say whether a beat's events equal the recorded ones; for protocol 1, words are ignored."""
+    """Return whether a beat's events equal the recorded ones.
+
+    In a record of protocol 1, differences between sentences do not count.
+    """
     if _is_old(header):
         return list(map(_bare, recorded)) == list(map(_bare, again))
     return codec.encode(tuple(recorded)) == codec.encode(in_earlier_words(recorded, again))
 
 
 def same_result(header: Header, recorded: Result, again: Result) -> bool:
-    """Say whether a result equals the recorded one; for protocol 1, words are ignored."""
+    """Return whether a result equals the recorded one.
+
+    In a record of protocol 1, a difference between the reasons does not count.
+    """
     if _is_old(header):
         again = msgspec.structs.replace(again, reason=recorded.reason)
     return recorded == again
@@ -73,6 +79,6 @@ def _is_old(header: Header) -> bool:
 
 
 def _bare(event: Event) -> bytes:
-    """Encode an event without its words."""
+    """Encode an event without its sentences."""
     data = {name: value for name, value in event.data.items() if name not in _WORDS}
     return codec.encode(msgspec.structs.replace(event, said=say("plain.text", text=""), data=data))

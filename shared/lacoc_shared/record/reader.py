@@ -1,4 +1,4 @@
-"""Read a record from its packed file or its segments, even if it is cut off anywhere."""
+"""Reads a record from its packed file or its segments, even if it is cut off anywhere."""
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ V = TypeVar("V")
 
 
 class NoMatch(UserError):
-    """These files hold no match that can be read."""
+    """These files contain no match that can be read."""
 
 
 class _Gap(Exception):
@@ -32,37 +32,39 @@ class _Gap(Exception):
 
 @dataclass(repr=False)
 class Record:
-    """Everything that is recorded of a match, by beat."""
+    """Everything that is recorded of a match, sorted by beat."""
 
     headers: list[Header] = field(default_factory=list)
     """One header for each segment, in order."""
     inputs: dict[int, list[Input]] = field(default_factory=dict)
-    """Inputs of each beat, in order."""
+    """The inputs of each beat, in order."""
     events: list[Event] = field(default_factory=list)
     frames: list[tuple[int, bytes]] = field(default_factory=list)
-    """(beat, encoded `Frame`)."""
+    """Pairs of a beat and the encoded `Frame`."""
     touches: dict[int, Touch] = field(default_factory=dict)
     snapshots: list[tuple[int, bytes]] = field(default_factory=list)
-    """(beat, state of physics after it)."""
+    """Pairs of a beat and the state of physics after it."""
     sheets: list[tuple[int, Sheet]] = field(default_factory=list)
     scenes: list[tuple[int, Scene]] = field(default_factory=list)
     results: list[Result] = field(default_factory=list)
     """The results so far; each replaces the one before."""
     health: HealthVerdict | None = None
-    """The newest verdict; None: there is none yet, or the match was not played in real time."""
+    """The newest verdict about how well the match ran; None: there is none yet, or the match was
+    not played in real time."""
     last_beat: int = -1
-    """The last beat with any message; -1: none."""
+    """The last beat with any message; -1: there is no message."""
     cut: Phrase | None = None
-    """How far the record could be read and why reading stopped; None if it is whole."""
+    """Why reading stopped too early, and at which place; None: the record is complete."""
     flaw: Phrase | None = None
-    """Damage that loses nothing of the match, such as in the file's index; None: there is none."""
+    """Damage that does not change the match, for example in the file's index; None: there is
+    none."""
 
     gap: bool = False
     """Whether reading stopped because the next segment does not continue where the last one ends.
     """
     lost: bool = False
-    """Whether a part is lost: a segment is missing, or a file is damaged or incomplete. Nothing is
-    lost if a killed court did not write the end."""
+    """Whether a part of the match is lost, because a segment is missing or a file is damaged or
+    incomplete. A missing end, as after a kill of the court, does not count."""
 
     def __repr__(self) -> str:
         match_id = self.headers[0].match_id if self.headers else ""
@@ -81,12 +83,18 @@ class Record:
 
     @property
     def warning(self) -> Phrase | None:
-        """What somebody who uses the record should know: where it ends early, or its flaw."""
+        """A warning for the user of the record: where it ends too early, or its damage.
+
+        None: all is well.
+        """
         return self.cut or self.flaw
 
     @property
     def given_s(self) -> float:
-        """How many seconds the referee gave on the clock; a negative number took time away."""
+        """How many seconds the referee has added to the time of play.
+
+        Negative: time was taken away.
+        """
         given_s = 0.0
         for event in self.events:
             arguments = event.data.get("arguments")
@@ -98,15 +106,15 @@ class Record:
         return given_s
 
     def sheet_at(self, beat: int) -> Sheet | None:
-        """Return the sheet that was valid at a beat; None before the first."""
+        """Return the sheet that was valid at a beat; None before the first sheet."""
         return _newest(beat, self.sheets)
 
     def scene_at(self, beat: int) -> Scene | None:
-        """Return the scene that was valid at a beat; None before the first."""
+        """Return the scene that was valid at a beat; None before the first scene."""
         return _newest(beat, self.scenes)
 
     def until(self, beat: int) -> "Record":
-        """Return the record with its messages up to a beat, without any later message."""
+        """Return the record with only its messages up to a beat."""
         kept = Record(
             headers=[header for header in self.headers if header.first_beat <= beat],
             inputs={number: items for number, items in self.inputs.items() if number <= beat},
@@ -135,10 +143,10 @@ class Record:
         Args:
             paths: a packed file; or one segment, which stands for all segments of its match; or
                 several segments, in order.
-            also: is also called, with the bytes of every message.
+            also: called with topic, beat and bytes of every message.
 
         Raises:
-            NoMatch: if no file has a whole header.
+            NoMatch: if no file has a complete header.
             UserError: if a file does not exist, is not a record, is of another format or another
                 match, or if the beginning is missing.
         """
@@ -182,7 +190,7 @@ class Record:
                 self.cut = said
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
-        """Add one message."""
+        """Add one message to the record."""
         match topic:
             case "/lacoc/header":
                 self._begin_segment(path, message)
@@ -245,7 +253,10 @@ class Record:
         self._forget_from(header.first_beat)
 
     def _forget_from(self, beat: int) -> None:
-        """Drop what earlier segments have of this beat and of later ones (`Header.first_beat`)."""
+        """Drop the messages of this beat and of later ones, which a new segment begins with again.
+
+        See `Header.first_beat`.
+        """
         if self.last_beat < beat:
             return
         self.last_beat = beat - 1
@@ -262,7 +273,7 @@ class Record:
 
 
 def _no_header(paths: Sequence[Path]) -> Phrase:
-    """Say what was found in files of which none has a whole header."""
+    """Return what was found in the files, of which none has a complete header."""
     if len(paths) > 1:
         return say("recording.no-match", files=[str(path) for path in paths])
     size = paths[0].stat().st_size
@@ -272,7 +283,7 @@ def _no_header(paths: Sequence[Path]) -> Phrase:
 
 
 def _drop(items: dict[int, V], beat: int) -> None:
-    """Drop the entries from a beat on; `items` is in the order of beats."""
+    """Drop the entries from a beat on; `items` must be in the order of beats."""
     while items and next(reversed(items)) >= beat:
         items.popitem()
 

@@ -1,4 +1,4 @@
-"""The contents of a record other than inputs, events and frames."""
+"""The messages of a record, except inputs, events and frames."""
 
 from typing import Any
 
@@ -11,53 +11,54 @@ from lacoc_shared.words import Phrase
 
 
 class ForkSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """Who plays a seat in a fork's own beats; without bot and script, its recorded keys do."""
+    """Who steers a robot in a fork's own beats; without bot and script, the recorded keys do."""
 
     seat: str
     """Id of the seat."""
     bot: str = ""
-    """The bot that plays it, as it was named; of a file the name alone, without its folders."""
+    """Name of the bot, as the user typed it; of a bot file only the name, without its folders."""
     script: str = ""
-    """File name of the key script that plays it."""
+    """File name of the key script that steers the robot."""
 
 
 class ForkChanges(msgspec.Struct, frozen=True, kw_only=True):
-    """How a fork's own beats were made from the match that it goes on from."""
+    """What was changed at the beat at which a fork leaves its origin."""
 
     seats: tuple[ForkSeat, ...]
     """All seats, in the order of the arena."""
     take_back: int | None = None
-    """Number of the event that was taken back; None: none."""
+    """Number of the event that was taken back; None: no event was."""
     restart: tuple[str, ...] = ()
     """Ids of the seats whose robots were put back at a start place."""
     variant: int = 0
-    """Which delays its bots had: forks with other numbers had other ones. 0: none."""
+    """Number that decides the small delays of the fork's bots: forks with other numbers have other
+    delays. 0: no delays."""
 
     @property
     def is_none(self) -> bool:
-        """True if nothing was changed."""
+        """True if nothing was changed: no bot, script, take-back or restart."""
         players = any(one.bot or one.script for one in self.seats)
         return not players and self.take_back is None and not self.restart
 
 
 class Origin(msgspec.Struct, frozen=True, kw_only=True):
-    """What a fork goes on from: another match, up to a beat."""
+    """The match from which a fork goes on, and the beat."""
 
     match_id: str
     """Id of that match; it may be a fork too."""
     beat: int
     """First beat that the fork plays itself; it has all earlier beats from the other match."""
     record_hash: str
-    """Hash of the messages of that match's record, hexadecimal."""
+    """Hash of the messages in that match's record, hexadecimal."""
     changes: ForkChanges | None = None
-    """How the fork was made; None: its record is older and does not say."""
+    """How the fork was made; None: not known, because its record is older."""
 
 
 class Setup(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that a match is made from; with the inputs it gives the same match again."""
 
     match_id: str = ""
-    """Names the match's record."""
+    """Id of the match; its record has this name."""
     court: str
     match: int
     """Number of the match at its court, from 1."""
@@ -67,42 +68,43 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     limits: dict[str, float]
     """Contest limits for robots (rules 1) that differ from the defaults."""
     assigned: Assigned | None = None
-    """What the office, or a court that was started alone, assigned; None: the record is older."""
+    """What the office assigned, or a court that was started alone; None: not known, because the
+    record is older."""
     origin: Origin | None = None
-    """What the match is a fork of; None: it was played from its first beat on."""
+    """The origin, if the match is a fork; None: it was played from its first beat on."""
 
 
 class Header(msgspec.Struct, frozen=True, kw_only=True):
     """The first message of every segment of a record."""
 
     format: int
-    """`FORMAT` of the software that wrote it."""
+    """Number of the format (`FORMAT`) in which the segment is written."""
     match_id: str
-    """Id of the match, equal in all its segments; names its files."""
+    """Id of the match; all its segments have the same, and their files are named by it."""
     segment: int
-    """Number of segments before this one; 0 for the first."""
+    """Index of this segment, from 0."""
     first_beat: int
-    """First beat of the segment. Anything that earlier segments hold from this beat on is ignored,
-    because no reply was sent yet: a court killed in the middle of a beat plays that beat again.
-    """
+    """First beat of the segment. Messages from this beat on in earlier segments are ignored: a
+    court that is killed in the middle of a beat has sent no reply for it, and plays it again."""
     started: str
     """Wall time at which the segment began, ISO 8601, UTC."""
     versions: dict[str, str]
-    """lacoc, protocol, mujoco, model, machine; a replay needs the same mujoco and model."""
+    """Versions of lacoc, protocol, mujoco, model and machine; a replay needs the same mujoco and
+    model."""
     arithmetic: dict[str, str] = {}
-    """Fingerprint of the arithmetic of the machine (`functions`, `model`, `path`: hashes) and its
-    origin (`processor`, `libc`, `python`, `system`). Empty in older records."""
+    """Hashes that identify the arithmetic of the machine (`functions`, `model`, `path`), and where
+    it comes from (`processor`, `libc`, `python`, `system`). Empty in older records."""
     setup: Setup
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """What a tick's frame does not show: which markers were touched, and which robots put back.
+    """Facts of a tick that its frame lacks: markers that were touched, robots that were put back.
 
     It is not recorded for a tick without touches and without robots that were put back.
     """
 
     touched: tuple[tuple[int, ...], ...]
-    """For each seat, the markers that it touched."""
+    """For each seat, the markers that its robot touched."""
     placed: tuple[tuple[float, float, float] | None, ...]
     """For each seat, the start place where it was put in this tick: x, y [m], heading [rad]."""
 
@@ -118,27 +120,28 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
     scores: tuple[int, ...]
     """Points by seat, with the referee's adjustments."""
     computed: str
-    """Seat id of the winner by the rules, "draw", or "" if play never ended."""
+    """Id of the seat that wins by the rules, "draw", or "" if the match never reached its end."""
     official: str
-    """Seat id of the official winner or "draw"; "" until OFFICIAL, "void" for a void match."""
+    """Id of the official winner's seat, or "draw"; "void" for a void match; "" before the phase
+    OFFICIAL."""
     reason: Phrase | str
     """Why the match ended (`over.*`; a text in a record of protocol 1)."""
     clock_s: float
     beats: int
     digest: str
-    """Hash chain over the state up to the last beat, hexadecimal."""
+    """Hash chain over the states of physics up to the last beat, hexadecimal."""
     model: str
     """Hash of the compiled model, hexadecimal."""
 
 
 FORMAT = 1
-"""Version of the layout of records."""
+"""Version of the format of records."""
 
 PROFILE = "lacoc"
-"""MCAP profile of a record: distinguishes it from other MCAP files."""
+"""MCAP profile of a record, by which it is told from other MCAP files."""
 
 BEAT_NS = 20_000_000
-"""Nanoseconds in a beat: a message's time in the file is its beat number times this."""
+"""Nanoseconds in a beat. The time of a message in the file is its beat number times this."""
 
 KINDS: dict[str, Any] = {
     "/lacoc/header": Header,
@@ -152,5 +155,5 @@ KINDS: dict[str, Any] = {
     "/lacoc/result": Result,
     "/lacoc/health": HealthVerdict,
 }
-"""The channels of a record by topic, and the msgpack message of each; None: bytes that only the
-court understands. A channel's id is its position here, counted from 1."""
+"""The channels of a record: topic and type of the msgpack message; None: bytes that only the court
+can read. The id of a channel is its position here, counted from 1."""

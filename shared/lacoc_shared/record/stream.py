@@ -1,4 +1,4 @@
-"""Read one file of a record, message by message, in the order in which they were written."""
+"""Reads one file of a record, message by message, in the order in which they were written."""
 
 import struct
 import zlib
@@ -35,62 +35,62 @@ DAMAGE = (
     MemoryError,
     OverflowError,
 )
-"""Errors that reading raises for bytes that are not a record."""
+"""The exceptions that reading raises if the bytes are not a record."""
 
 
 _MAX_BYTES = 1 << 26
-"""Largest message or chunk of a record. The largest that courts write are a scene of about 30 kB
-and a chunk of 128 KiB."""
+"""Largest message or chunk of a record [bytes]. The largest ones that courts write are a scene of
+about 30 kB and a chunk of 128 KiB."""
 _RECORD_HEAD_BYTES = 9
-"""Size of an MCAP record's opcode and length."""
+"""Size of an MCAP record's opcode and length [bytes]."""
 _CRC_BYTES = 4
 _ENDING_BYTES = _RECORD_HEAD_BYTES + 16 + _CRC_BYTES + len(MCAP0_MAGIC)
-"""Size of the footer, whose last field is the checksum of the summary, and of the magic after it.
-"""
+"""Size of the footer, whose last field is the checksum of the summary, and of the magic bytes after
+it [bytes]."""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
-"""A file may unpack to at most this many bytes plus this many times its own size. Real matches
-unpack to three or four times their size, even if nothing happens at the court."""
+"""A file may unpack to at most so many bytes, plus so many times its own size. Real matches unpack
+to three or four times their size, even if nothing happens at the court."""
 
 _VALUES, _VALUES_RATIO = 500_000, 0.5
-"""A file may have at most this many lists and maps, plus this many for each of its bytes. An empty
-one is a single byte in a message, and 60 bytes when it is read."""
+"""A file may have at most so many lists and maps, plus so many for each of its bytes. An empty list
+is a single byte in a message, and 60 bytes in memory."""
 _COUNTED = frozenset(KINDS) - {"/lacoc/frame", "/lacoc/snapshot"}
 """Topics whose messages may have values of any kind."""
 _LISTS_AND_MAPS = bytes([*range(0x80, 0xA0), *range(0xDC, 0xE0)])
-"""The bytes with which a list or a map begins in msgpack; ASCII text has none of them."""
+"""The bytes with which a list or a map begins in msgpack; no ASCII character has these values."""
 _NAME_MOST = 200
-"""Longest name of a team in a record [characters]; courts take shorter ones."""
+"""Longest name of a team in a record [characters]; courts accept shorter ones only."""
 
 _LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
-"""A court records a frame every second, so a gap of more than an hour means a damaged time. A
-program that counts all beats up to such a time would never end."""
+"""A court records at least one frame a second, so a gap of more than an hour shows that a time is
+damaged. A program that counts all beats up to such a time would never end."""
 
 TakeBytes = Callable[[str, int, bytes], None]
 """Called with a message's topic, beat and bytes."""
 Take = Callable[[str, int, bytes, Any], None]
-"""Called with topic, beat, bytes and the decoded message (for a snapshot, the bytes again)."""
+"""Called with topic, beat, bytes and the decoded message; for a snapshot with the bytes in its
+place."""
 
 
 class Stop(NamedTuple):
-    """A fault of a file, which mostly is the reason why it can't be read any further."""
+    """A fault of a file, which in most cases ends the reading."""
 
     why: Phrase
     """The fault, as the end of a sentence (`cut.*`)."""
     damaged: bool
-    """Whether messages are lost, because the file is damaged or incomplete. False: it was only not
-    closed, as by a killed court, or the damage is beside the messages.
-    """
+    """Whether messages are lost, because the file is damaged or incomplete. False: the file was
+    only not closed, as after a kill of the court, or the damage is outside of the messages."""
     at_end: bool = False
-    """Whether the file was read to the end of its messages in spite of the fault."""
+    """Whether all messages could be read in spite of the fault."""
 
     @property
     def loses_nothing(self) -> bool:
-        """True if all messages of the file were read in spite of the fault."""
+        """True if the fault loses no message, because all of them were read."""
         return self.at_end and not self.damaged
 
 
 class _AnyHeader(msgspec.Struct):
-    """The one entry that headers of all formats have."""
+    """The only field that the headers of all formats have in common."""
 
     format: int
 
@@ -98,7 +98,7 @@ class _AnyHeader(msgspec.Struct):
 def walk_messages(path: Path, take: Take) -> Stop | None:
     """Pass every whole message of a file to `take`, up to its end or the first fault.
 
-    See `walk_bytes`. Bytes that can't be decoded as their topic's message are a fault too.
+    As `walk_bytes`; but bytes that can't be decoded as a message of their topic are a fault too.
     """
     try:
         values = _VALUES + path.stat().st_size * _VALUES_RATIO
@@ -127,7 +127,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
         take: called with each message.
 
     Returns:
-        None if the file was closed and is whole; else its fault: there may have been more
+        None if the file was closed and is complete; else its fault: there may have been more
         messages.
 
     Raises:
@@ -175,10 +175,10 @@ def _damaged_index() -> Stop:
 
 
 def _damaged_data(data: bytes, at: int, count: int) -> Stop:
-    """Return the fault of a file whose data do not fit their checksum, though each chunk does.
+    """Return the fault of a file whose data do not fit their checksum, while each chunk does.
 
-    If the damage made a chunk look like something else, its messages are lost. The statistics say
-    how many messages there should be.
+    If the damage is in the type of a chunk, the chunk's messages are lost. The number of messages
+    in the file's summary shows whether this is so.
 
     Args:
         data: the file.
@@ -203,9 +203,9 @@ def _messages_by_summary(data: bytes, at: int) -> int | None:
 
 
 def _is_index_damaged(data: bytes, at: int) -> bool:
-    """Say whether a file's summary, which begins at byte `at`, is damaged or cut.
+    """Return whether a file's summary, which begins at byte `at`, is damaged or cut off.
 
-    Only a packed file has an index and a checksum there.
+    Only a packed file has an index and a checksum in it.
     """
     if not _is_packed(data):
         return False
@@ -219,7 +219,7 @@ def _is_index_damaged(data: bytes, at: int) -> bool:
 
 
 def _is_packed(data: bytes) -> bool:
-    """Say whether a file's messages are in chunks."""
+    """Return whether a file's messages are in chunks, as in a packed file."""
     at = len(MCAP0_MAGIC)
     while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
         at += _RECORD_HEAD_BYTES + int.from_bytes(data[at + 1 : at + 9], "little")
@@ -227,7 +227,7 @@ def _is_packed(data: bytes) -> bool:
 
 
 def _is_cut(data: bytes, at: int) -> bool:
-    """Say whether a file ends in the middle of the MCAP record that begins at byte `at`."""
+    """Return whether a file ends in the middle of the MCAP record that begins at byte `at`."""
     if data.endswith(MCAP0_MAGIC) and len(data) > at + len(MCAP0_MAGIC):
         return False
     length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD_BYTES], "little")
@@ -249,8 +249,8 @@ def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
     """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
 
     Raises:
-        McapError: if a chunk is too large, or its compression is none that LACOC uses. Other
-            errors of `DAMAGE` if the file is damaged.
+        McapError: if a chunk is too large, or has a compression that LACOC does not use. If the
+            file is damaged, other errors of `DAMAGE`.
     """
     left = _UNPACKED_BYTES + _UNPACKED_RATIO * size
     reader = StreamReader(file, validate_crcs=True, record_size_limit=size, emit_chunks=True)

@@ -1,4 +1,4 @@
-"""Summarise a record without reading all of it."""
+"""Reads a summary of a record, without reading all of it."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ _MAX_BYTES = 1 << 20
 
 
 class Summary(msgspec.Struct, frozen=True):
-    """One match in a list of matches."""
+    """A match in a list of recordings."""
 
     title: str
     """Title of the arena."""
@@ -23,22 +23,22 @@ class Summary(msgspec.Struct, frozen=True):
     number: int
     """Number of the match at its court."""
     started: str
-    """Wall time, ISO 8601, UTC."""
+    """Time when the match was opened, ISO 8601, UTC."""
     teams: tuple[str, ...]
     scores: tuple[int, ...]
-    """Empty if there is no result."""
+    """Points by seat; empty: there is no result."""
     winner: str
-    """Seat id, "draw", "void", or "" if there is none."""
+    """Id of the winner's seat, "draw" or "void"; "": there is no result."""
     seats: tuple[str, ...]
     """The ids of the seats."""
     fork_of: str = ""
-    """Id of the match that this is a fork of; "": it is no fork."""
+    """Id of the match of which this is a fork; "": it is not a fork."""
 
 
 def summary(path: Path) -> Summary | None:
     """Read the summary of a packed record; None if the file is incomplete or not a record.
 
-    Reads only the parts of the file that hold its header, sheets and results.
+    It reads only the parts of the file with header, sheets and results.
     """
     header: Header | None = None
     sheet: Sheet | None = None

@@ -1,9 +1,9 @@
-"""Write the record of a running match; a killed court loses nothing of it.
+"""Writes the record of a running match so that a kill of the court loses nothing.
 
 The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message is one system
-call. `mcap.writer` would put a buffer before the file. A kill would lose that buffer, and filling
-it takes longer than writing to the file. So this module packs the one MCAP record that is written
-50 times a second, and takes only the others from `mcap.records`.
+call. `mcap.writer` would put a buffer before the file. A kill would lose this buffer, and filling
+it takes longer than writing to the file. So this module itself packs the kind of MCAP record that
+is written 50 times a second, and uses `mcap.records` for the other kinds only.
 """
 
 import os
@@ -27,15 +27,16 @@ from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, 
 from lacoc_shared.words import Phrase, say
 
 SYNC_S = 1.0
-"""Time between writes to the disk (fsync): a power cut loses at most this much."""
+"""Time between two writes to the disk (fsync) [s]: a power cut loses at most so much."""
 
 _HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEALTH = range(
     1, len(KINDS) + 1
 )
 _message_head = struct.Struct("<BQHIQQ").pack
-"""Opcode, length of the rest, channel, sequence, log time, publish time."""
+"""Layout of a message's head: opcode, length of the rest, channel, sequence, log time, publish
+time."""
 _HEAD_BYTES = 22
-"""Bytes of the header that the length field includes."""
+"""Number of bytes of this head that the length field includes."""
 
 
 class RecordWriter:
@@ -45,7 +46,7 @@ class RecordWriter:
 
     Args:
         folder: folder of the records; made if it does not exist.
-        header: names the file and is its first message.
+        header: the first message of the file; the file is named by it.
 
     Raises:
         UserError: if the file can't be made, or exists already.
@@ -92,7 +93,7 @@ class RecordWriter:
         self._syncer.start()
 
     def flush(self) -> None:
-        """Write the data that wait in memory.
+        """Write the data that wait in memory because the disk was full.
 
         Raises:
             UserError: if the disk does not take them.
@@ -124,7 +125,7 @@ class RecordWriter:
         self._write(_TOUCH, beat, codec.encode(touch))
 
     def snapshot(self, beat: int, data: bytes) -> None:
-        """Write the state of physics after a beat; only the court understands `data`."""
+        """Write the state of physics after a beat, as bytes that only the court can read."""
         self._write(_SNAPSHOT, beat, data)
 
     def sheet(self, beat: int, sheet: Sheet) -> None:
@@ -157,7 +158,7 @@ class RecordWriter:
         self.leave()
 
     def leave(self) -> None:
-        """Close the file as it is, once the disk has everything.
+        """Close the file without an end, when the disk has everything.
 
         A match without an end can continue in a new segment.
         """
@@ -177,7 +178,7 @@ class RecordWriter:
         self._dirty = True
 
     def _put(self, data: bytes) -> None:
-        """Append to the file; the rest that the disk does not take is kept for the next call."""
+        """Append data to the file; what the disk does not take is kept for the next call."""
         waiting = self._backlog
         written = 0 if waiting else self._append(data)
         if written < len(data):

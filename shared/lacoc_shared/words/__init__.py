@@ -1,7 +1,7 @@
-"""All sentences for people. A sentence is a code with values; one table has the words.
+"""All sentences for people: a program sends a code with values, and one table has the words.
 
-A program says a `Phrase` (`say`); a page or a terminal renders it (`render`). No program parses a
-sentence. The table, in English and Japanese, is in `texts/*.toml`; docs/words.md
+A program makes a `Phrase` (`say`); a page or a terminal puts it into words (`render`). No program
+takes a sentence apart. The table, in English and Japanese, is in `texts/*.toml`; docs/words.md
 defines the template language. `use` sets the language of a process.
 """
 

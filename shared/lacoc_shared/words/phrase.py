@@ -10,12 +10,12 @@ class Phrase(msgspec.Struct, frozen=True, omit_defaults=True):
     """A sentence for a person; `render` puts it into words."""
 
     code: str
-    """Names the sentence in the table: "decision.adjust"."""
+    """Code of the sentence in the table, such as "decision.adjust"."""
     values: dict[str, "Value"] = {}
     """Values for the holes of the sentence, by name."""
 
     def with_values(self, **values: "Value") -> "Phrase":
-        """Return the phrase with these values added; for values that only a later caller knows."""
+        """Return the phrase with further values, which an earlier caller could not give."""
         return Phrase(self.code, {**self.values, **values})
 
     def __hash__(self) -> int:
@@ -29,13 +29,13 @@ Value = Union[str, int, float, bool, None, Phrase, tuple[Scalar, ...]]  # noqa: 
 def say(code: str, /, **values: str | int | float | Phrase | Sequence[Scalar] | None) -> Phrase:
     """Make a phrase.
 
-    Nothing is checked here, so a wrong value never stops a match. Instead
-    tests/shared/test_words.py compares the code and the names of every call of `say` with the
+    Nothing is checked here, so that a wrong value never stops a match. Instead
+    tests/shared/test_words.py compares the code and the names in every call of `say` with the
     table, and `faults` checks the values that occur in tests.
 
     Args:
         code: a code of the table, written as a literal.
-        values: all values that the table declares for the code; None omits a value.
+        values: all values that the table has for the code; None: the value is left out.
     """
     return Phrase(code, {name: _value(value) for name, value in values.items()})
 

@@ -1,8 +1,8 @@
-"""Put phrases into words, in English or Japanese.
+"""Puts phrases into words, in English or Japanese.
 
-client/web/src/i18n/render.ts does the same; tests/shared/test_words.py checks that both agree.
-No phrase raises an error here: an unknown code is shown with its values, a missing value as
-"?", and a phrase that is nested too deep as its code alone.
+client/web/src/i18n/render.ts does the same; tests/shared/test_words.py checks that both agree. No
+phrase raises an error here: an unknown code is shown with its values, a missing value as "?", and a
+phrase that is nested too deep as its code alone.
 """
 
 import math
@@ -23,15 +23,15 @@ LONGEST_LIST = 100
 LONGEST_TEXT = 2000
 """Most characters of a value that are shown."""
 LARGEST = 1e15
-"""A number of this size or more is shown as "?"."""
+"""A number whose size is this or more is shown as "?"."""
 DECIMALS = 6
-"""Decimals of a number if its template does not say how many; trailing zeros are left out."""
+"""Decimals of a number if its template has no format for it; trailing zeros are left out."""
 
 _CONTROLS = re.compile(
     "[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufeff]"
 )
 _DISC = re.compile("c(1?[0-9]|2[0-5])r([0-9]{1,2})")
-"""A disc by its column and row, counted from 0; columns have letters."""
+"""Matches the name of a disc: column and row, counted from 0. Columns are shown as letters."""
 _NUMBERED = re.compile("(corner|flag)([0-9]{1,4})")
 _EXACT = Context(prec=40)  # enough for LARGEST with DECIMALS
 _current: Language = "en"
@@ -53,7 +53,7 @@ def render(phrase: Phrase | str, language: Language | None = None) -> str:
 
     Args:
         phrase: the phrase; a plain text is returned unchanged.
-        language: None takes the language of the process.
+        language: the language; None: that of the process.
     """
     if isinstance(phrase, str):
         return phrase
@@ -82,7 +82,7 @@ def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
 
 
 def _unknown(phrase: Phrase, depth: int) -> str:
-    """Show a code that is not in the table, with its plain values."""
+    """Return the text for a code that is not in the table: the code with its plain values."""
     names = sorted(phrase.values, key=lambda name: name.encode("utf-16-be", "surrogatepass"))
     plain = (
         f"{_text(name)}: {_filled(phrase.values[name], (), 'en', DEEPEST)}"
@@ -146,7 +146,7 @@ def _word(code: str, language: Language) -> str:
 
 
 def _text(text: str) -> str:
-    """Shorten a text from outside, and replace characters that would shift the words beside it."""
+    """Shorten a text from outside; replace characters that would disturb the words beside it."""
     short = text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
     return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", short)
 
@@ -171,5 +171,5 @@ def _number(value: float, formats: tuple[str, ...]) -> str:
 
 
 def _fixed(value: float, digits: int) -> str:
-    """Round half up on the exact value, as JavaScript's `toFixed` does."""
+    """Round half up, from the exact value, as JavaScript's `toFixed` does."""
     return str(Decimal(value).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP, _EXACT))

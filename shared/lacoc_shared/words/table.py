@@ -31,7 +31,7 @@ FILES = (
     "environments",
 )
 ON_PAGES = FILES[:-3]
-"""The files that pages need; the last three have only sentences for terminals and programs."""
+"""All files but the last three, which have only sentences for terminals and programs."""
 
 
 class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -45,7 +45,7 @@ class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @cache
 def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
-    """Read the table: every code with its entry."""
+    """Read the table: a mapping from each code to its entry."""
     entries: dict[str, Wording] = {}
     folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
@@ -57,7 +57,7 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
 
 
 def read(file: Traversable) -> Mapping[str, Wording]:
-    """Read the entries of a TOML file, by code."""
+    """Read a TOML file of the table: a mapping from each code to its entry."""
     return {
         f"{subject}.{name}": msgspec.convert(entry, Wording)
         for subject, codes in tomllib.loads(file.read_text(encoding="utf-8")).items()
@@ -66,7 +66,10 @@ def read(file: Traversable) -> Mapping[str, Wording]:
 
 
 def faults(phrase: Phrase) -> list[str]:
-    """List where a phrase differs from the table; for tests of what programs say."""
+    """List how a phrase differs from its entry in the table.
+
+    Tests check with it what programs say.
+    """
     return list(_faults(phrase))
 
 

@@ -28,7 +28,7 @@ class BadTemplate(ValueError):
 
 @dataclass(frozen=True)
 class Hole:
-    """A place in a template for a value."""
+    """A place in a template into which a value is put."""
 
     name: str
     formats: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Measures the link to a court: does it work, how long does it take, what gets lost."""
+"""Measures the link to a court: whether it works, how long an answer takes, what gets lost."""
 
 import time
 from collections.abc import Iterator
@@ -26,7 +26,7 @@ def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[F
     Args:
         access: the way to the court.
         seconds: how long the court's frames are counted.
-        planned: whether the way is of a contest file, whose courts need not run yet.
+        planned: whether the court stands in a contest file; then it need not run yet.
     """
     about = say("doctor.court", court=access.court)
     try:
@@ -45,7 +45,11 @@ def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[F
 
 
 def _nobody_listens(why: Phrase) -> bool:
-    """Return whether each address of a court was reached, and no program listens there."""
+    """Return whether every address of a court was reached, and at none of them a program listens.
+
+    Args:
+        why: why no connection could be opened.
+    """
     reasons = why.values.get("sentences", (why,))
     return isinstance(reasons, tuple) and all(
         isinstance(one, Phrase) and one.code == "connect.nobody" for one in reasons
@@ -84,7 +88,7 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
 
 
 def _frames(view: Spectator, seconds: float) -> Finding:
-    """Measure the frames a second and the longest gap between two frames.
+    """Measure how many frames a second arrive, and the longest gap between two of them.
 
     A frame counts as lost if a newer one replaced it before it was read. A repeated frame does not
     count: a court that can't go on sends its last one again.

@@ -39,7 +39,8 @@ _LEAST_FREE_BYTES, _GOOD_FREE_BYTES = 100 * _MIB, 1024 * _MIB
 2 MiB packed, and 4 MiB while it is played."""
 _FSYNCS = 10
 _SLOW_FSYNC_S = 0.5
-"""A sync that takes longer than this gives a note [s]; a record is synced once a second."""
+"""If one sync to the disk takes longer than this, there is a note [s]; a record is synced once a
+second."""
 _SLOW_PERCENT, _TOO_SLOW_PERCENT = 1.0, 10.0
 _ASK_S = 1.0
 
@@ -49,7 +50,7 @@ class Status(StrEnum):
 
     OK = "ok"
     NOTE = "note"
-    """It works, but somebody should know."""
+    """It works, but somebody should read this."""
     PROBLEM = "problem"
 
 
@@ -60,15 +61,15 @@ class Finding(msgspec.Struct, frozen=True):
     status: Status
     found: Phrase | str
     todo: Phrase | str = ""
-    """What to do about it; "": nothing."""
+    """What somebody should do about it; "": nothing needs to be done."""
 
     def in_words(self) -> "Finding":
-        """Return the finding in the language of the process."""
+        """Return the finding with its sentences in the language of this process."""
         return Finding(render(self.about), self.status, render(self.found), render(self.todo))
 
 
 def packages() -> Iterator[Finding]:
-    """Check the versions of Python and LACOC, and that each needed package has a right version."""
+    """Check that Python, LACOC and each needed package have the right versions."""
     lacoc = distribution("lacoc")
     wanted = lacoc.metadata["Requires-Python"]
     python = platform.python_version()
@@ -132,7 +133,7 @@ def _package(needed: Requirement) -> Finding | None:
 def court_port(
     host: str, port: int, court: str | None, protocol: str = "tcp", authority: str = ""
 ) -> Finding:
-    """Check that a court can listen at a port, or already does.
+    """Check that a port is free for a court, or that the right court already listens there.
 
     Args:
         host: address of this machine to listen at.
@@ -140,7 +141,8 @@ def court_port(
         court: name of the court that the contest file has there; None: any court, and a taken
             port is only a note.
         protocol: "tls" if the court is encrypted.
-        authority: certificate (PEM) of a private authority that vouches for it; "": none.
+        authority: certificate (PEM) of a private authority that signed the court's certificate; "":
+            none.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)
@@ -161,7 +163,7 @@ def court_port(
 
 
 def web_port(host: str, port: int, *, needed: bool) -> Finding:
-    """Check that a gateway can listen at a port, or already does.
+    """Check that a port is free for a gateway, or that a gateway already listens there.
 
     Args:
         host: address of this machine to listen at.
@@ -185,7 +187,7 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
 
 
 def _why_taken(host: str, port: int) -> str:
-    """Say why a program can't listen at an address; "" if it can."""
+    """Return why a program can't listen at a port; "" if it can."""
     try:
         family, kind, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind) as probe:
@@ -199,7 +201,7 @@ def _why_taken(host: str, port: int) -> str:
 
 
 def graphics() -> Finding:
-    """Report the graphics that a browser may use; only the browser knows which it uses."""
+    """Report which graphics a browser may use; only the browser can tell which it really uses."""
     about, look = say("doctor.graphics"), say("doctor.graphics-look")
     if sys.platform != "linux":
         found = say("doctor.graphics-own", system=platform.system())
@@ -219,7 +221,7 @@ def graphics() -> Finding:
 
 
 def clock(seconds: float) -> Finding:
-    """Measure how punctually this machine wakes a program 50 times a second, as a court needs."""
+    """Measure how late this machine wakes a program that runs 50 times a second, as courts do."""
     with ThreadPoolExecutor(1) as thread:  # its priority is that of a court's beats
         went_first = thread.submit(go_first).result()
         late_s = thread.submit(_late_s, max(1, round(seconds / BEAT_S))).result()
@@ -242,7 +244,7 @@ def clock(seconds: float) -> Finding:
 
 
 def _late_s(beats: int) -> Sequence[float]:
-    """Return how late a court's beats would begin [s]."""
+    """Return how late each beat of a court would begin on this machine [s]."""
     late_s = []
     due_s = time.monotonic()
     for _ in range(beats):
@@ -254,7 +256,7 @@ def _late_s(beats: int) -> Sequence[float]:
 
 
 def disk(folder: Path) -> Finding:
-    """Check that records can be written to a folder, its free space, and how long a sync takes."""
+    """Check a folder for records: whether it can be written, its free space, the time of a sync."""
     about = say("doctor.disk-name")
     above = (folder.absolute(), *folder.absolute().parents)
     there = next(one for one in above if os.path.lexists(one))

@@ -1,4 +1,4 @@
-"""Checks the public address of pages as a browser reaches it: name, certificate, WebSocket."""
+"""Checks the public address of pages as a browser reaches it: its name, certificate, WebSocket."""
 
 import http.client
 import socket
@@ -26,7 +26,8 @@ _SOON_DAYS = 14.0
 _DAY_S = 86_400.0
 _HOUR_S = 3600.0
 _CADDY = "Caddy Local Authority"
-"""Begins the name of the authority that Caddy makes for itself. Its certificates last for hours."""
+"""The name of the authority that Caddy makes for itself begins so. Its certificates last for
+hours."""
 
 
 class _PageAnswer(NamedTuple):
@@ -75,7 +76,7 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
 
 
 def plain_courts(public: PublicAddress, courts: Mapping[str, ContestCourt]) -> Iterator[Finding]:
-    """Note the courts that others reach in plain text, in a contest whose pages are encrypted.
+    """Report courts that others reach without encryption although the pages are encrypted.
 
     Args:
         public: how others reach the pages.
@@ -109,7 +110,7 @@ def _reached(public: PublicAddress, title: str, health: GatewayHealth) -> Iterat
 
 
 def _certificate(public: PublicAddress) -> Finding:
-    """Check how long the certificate is valid.
+    """Check until when the certificate of the pages is valid.
 
     Raises:
         OSError: if there is no connection, or the certificate is not proven.
@@ -151,11 +152,11 @@ def _websocket(public: PublicAddress) -> Finding:
 
 
 def _get(public: PublicAddress, path: str) -> _PageAnswer:
-    """Ask for a path below the pages.
+    """Request a path of the pages and return status and body.
 
     Raises:
         OSError: if nobody answers.
-        HTTPException: if the answer is no HTTP.
+        HTTPException: if the answer is not HTTP.
     """
     host, port = public.host, _port(public)
     connection = http.client.HTTPConnection(host, port, timeout=_WAIT_S)

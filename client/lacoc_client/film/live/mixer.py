@@ -4,7 +4,10 @@ import numpy as np
 
 
 class Mixer:
-    """A track of both sides, taken from its beginning on; where nothing sounds it is silent."""
+    """A stereo track that is taken piece by piece from its beginning.
+
+    Where nothing sounds it is silent.
+    """
 
     def __init__(self) -> None:
         self._taken = 0
@@ -14,7 +17,8 @@ class Mixer:
         """Add a sound.
 
         Args:
-            at: the sample at which it begins; one that was taken already becomes the next one.
+            at: number of the sample at which the sound begins. If that part of the track was taken
+                already, the sound begins with the next sample that is taken.
             samples: of the left and the right side in turn, each with 16 bits, little endian.
         """
         sound = np.frombuffer(samples, "<i2").reshape(-1, 2)
@@ -23,7 +27,7 @@ class Mixer:
         self._mixed[begin : begin + len(sound)] += sound
 
     def take(self, until: int) -> bytes:
-        """Return what was not taken yet, up to a sample, as `add` takes it."""
+        """Return the samples up to number `until` that were not taken yet, in the form of `add`."""
         count = max(0, until - self._taken)
         self._reach(count)
         found, self._mixed = self._mixed[:count], self._mixed[count:]

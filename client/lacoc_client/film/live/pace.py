@@ -1,15 +1,10 @@
-"""Says which picture of a stream is due, and leaves out those for which there was no time."""
+"""Says which picture of a stream is due, and skips pictures for which there was no time."""
 
 import math
 
 
 class PicturePace:
-    """The pictures of a stream, by the clock: picture `n` is due `n / fps` after the beginning.
-
-    Args:
-        fps: pictures a second.
-        began_s: when picture 0 is due [s].
-    """
+    """Counts the pictures of a stream: picture `n` is due `n / fps` seconds after the beginning."""
 
     def __init__(self, fps: int, began_s: float) -> None:
         self._fps = fps
@@ -18,17 +13,19 @@ class PicturePace:
         self.taken = 0
         """Number of pictures that were taken."""
         self.left_out = 0
-        """Number of pictures that were not."""
+        """Number of pictures that were skipped."""
 
     def wait_s(self, now_s: float) -> float:
-        """Return how long it is until the next picture is due [s]; 0: it is."""
+        """Return how long it is until the next picture is due [s]; 0: it is due now."""
         return max(0.0, self._began_s + self._next / self._fps - now_s)
 
     def take(self, now_s: float) -> int:
-        """Return the number of the picture that is due; all before it are past.
+        """Return the number of the picture to take now.
+
+        Pictures between it and the last one are skipped.
 
         Args:
-            now_s: the time [s], not before the next picture is due.
+            now_s: the time [s]; the next picture must be due.
         """
         # A clock's last bits must not make picture 3 picture 2.
         due = math.floor((now_s - self._began_s) * self._fps + 1e-6)

@@ -17,7 +17,8 @@ SOUND_HZ = 48_000
 """Samples a second of the sound."""
 _OPTIONS = {"preset": "veryfast", "crf": "23", "maxrate": "4M", "bufsize": "8M"}
 _WAITING_MOST = 4
-"""Pictures that may wait; further ones are left out: a stream never falls behind."""
+"""How many pictures may wait; further pictures are left out, so that a stream never falls
+behind."""
 _AGAIN_S = 2.0
 _LOOK_S = 0.2
 
@@ -31,13 +32,15 @@ class LivePicture(NamedTuple):
 
 
 class Sender:
-    """Sends pictures and sounds; a server that has gone is tried again until it is back.
+    """Encodes pictures and sounds and sends them.
+
+    If the server is gone, tries again until it is back.
 
     Args:
-        target: where they go.
+        target: where the stream goes.
         size: width and height of a picture [px].
         fps: pictures a second.
-        tell: called with what happens, from this thread.
+        tell: called on the sender's thread with a sentence when the server goes or comes back.
     """
 
     def __init__(
@@ -51,13 +54,14 @@ class Sender:
         self.sent = 0
         """Number of pictures that were sent."""
         self.left_out = 0
-        """Number of pictures that were not, because the encoder or the server was too slow."""
+        """Number of pictures that were left out, because the encoder or the server was too slow."""
         self.failed: OSError | None = None
-        """Why a file can't be written; the stream is at its end."""
+        """Why the file can't be written; the stream has ended then. None: there was no such
+        error."""
         self._thread.start()
 
     def show(self, picture: LivePicture) -> None:
-        """Send a picture, or leave it out if several wait."""
+        """Put a picture in the queue, or leave it out if the queue is full."""
         try:
             self._waiting.put_nowait(picture)
         except Full:
@@ -67,14 +71,14 @@ class Sender:
         """Send a sound.
 
         Args:
-            at_s: when it begins, counted from picture 0 [s].
+            at_s: when the sound begins, counted from picture 0 [s].
             samples: of both sides in turn, each with 16 bits, little endian.
         """
         with self._mixing:
             self._mixer.add(round(at_s * SOUND_HZ), samples)
 
     def end(self) -> None:
-        """Send what waits, and end."""
+        """Send the pictures that wait, then end the stream."""
         self._ending.set()
         self._thread.join(10 * _AGAIN_S)
 
@@ -94,7 +98,7 @@ class Sender:
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Leave pictures out for a time."""
+        """Drop all pictures that come in a time [s]."""
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
             self.left_out += self._next() is not None
@@ -106,10 +110,10 @@ class Sender:
             return None
 
     def _send(self, was_away: bool) -> None:
-        """Open the target, and send until the end.
+        """Open the target, and send pictures and sounds until the stream ends.
 
         Raises:
-            OSError: if it can't be written.
+            OSError: if the target can't be written.
         """
         first = None
         with av.open(

@@ -19,11 +19,11 @@ from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import Phrase, say
 
 _HELD_S = 0.4
-"""A picture waits so long until all sounds of its time are known."""
+"""How long a picture waits until all sounds of its time are known [s]."""
 _SOUNDS_S = 0.1
-"""Time between two questions for new sounds."""
+"""Time between two requests to the page for new sounds [s]."""
 _TOLD_S = 10.0
-"""Time between two reports."""
+"""Time between two reports [s]."""
 _AGAIN_S = 2.0
 _SLEPT_MOST_S = 0.05
 _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
@@ -31,15 +31,15 @@ _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
 
 @dataclass(frozen=True)
 class Streamed:
-    """What is streamed."""
+    """What a stream shows."""
 
     pages: str
     """Address of the event's pages."""
     court: str = ""
-    """One court; "": what the director shows."""
+    """Name of the court that is shown; "": what the director chooses."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the broadcast's page with a look."""
+        """Return the address of the broadcast's page, with the language of a look."""
         watched = {"court": self.court} if self.court else {"director": "1"}
         query = {"q": "low", "lang": look.language, "taken": "1", **watched}
         return f"{self.pages.rstrip('/')}/overlay?{urlencode(query)}"
@@ -47,16 +47,16 @@ class Streamed:
 
 @dataclass(frozen=True)
 class Report:
-    """How a stream went in the last seconds."""
+    """How a stream went since the report before."""
 
     hz: float
-    """Pictures a second that were sent."""
+    """How many pictures were sent a second."""
     left_out: float
-    """Share of the pictures that were left out."""
+    """Share of the pictures that were left out, 0 to 1."""
 
 
 class _Streaming:
-    """A stream that runs."""
+    """A stream that is running."""
 
     def __init__(
         self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
@@ -91,10 +91,10 @@ class _Streaming:
                     time.sleep(_AGAIN_S)
 
     def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
-        """Open the page, however often it must be tried.
+        """Open the page; try again until it opens.
 
         Raises:
-            Error: if the browser has gone.
+            Error: if the browser has ended.
         """
         is_away = False
         while not stopping():
@@ -113,7 +113,10 @@ class _Streaming:
                 return
 
     def _picture(self, page: Page, shots: Shots) -> None:
-        """Wait for the next picture, take it, and pass on those that were held long enough."""
+        """Wait for the time of the next picture and take it.
+
+        Send those that have waited for their sounds.
+        """
         wait_s = self._pace.wait_s(time.monotonic())
         if wait_s > _SLEPT_MOST_S:
             time.sleep(_SLEPT_MOST_S)
@@ -158,16 +161,16 @@ def stream(
 ) -> None:
     """Stream an event until `stopping` returns True.
 
-    A gateway, a court or a video server that has gone is waited for.
+    If the gateway, the court or the video server is gone, the stream waits until it is back.
 
     Args:
-        source: what is shown.
+        source: what the stream shows.
         target: where it goes.
         look: its language and size.
         fps: pictures a second.
         stopping: called for each picture.
-        tell: called with what happens, from any thread.
-        report: called each 10 s.
+        tell: called from any thread with a sentence when something goes or comes back.
+        report: called every 10 s.
 
     Raises:
         UserError: if there is no browser, or a file can't be written.

@@ -1,4 +1,4 @@
-"""Where a stream goes, and how it is written there."""
+"""Where a stream is written: a file, a folder or a video server, and in which format."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -7,7 +7,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _SILENT_US = "10000000"
-"""After so long without an answer a video server counts as gone [us]."""
+"""A video server that does not answer for this long counts as gone [us]."""
 _LIST = "index.m3u8"
 _FORMATS = {
     ".mp4": ("mp4", {"movflags": "frag_keyframe+empty_moov+default_base_moof"}),
@@ -24,27 +24,27 @@ class Target:
     Args:
         address: a path, or an address of a video server.
         form: the format of the container, by FFmpeg's name.
-        options: of the container.
+        options: options of the container.
     """
 
     address: str
     form: str
     options: dict[str, str] = field(default_factory=dict)
     is_remote: bool = False
-    """Whether it is a server, which may come back when it has gone."""
+    """Whether the target is a server, which may come back after it was gone."""
 
     @property
     def shown(self) -> str:
-        """The address without the key of the stream, which is its last part."""
+        """The address for messages, without its last part: that is the stream's secret key."""
         return f"{self.address.rpartition('/')[0]}/..." if self.is_remote else self.address
 
 
 def target(wanted: str) -> Target:
-    """Return where a stream goes.
+    """Return the target that a user named.
 
     Args:
-        wanted: `rtmp://...`, `rtmps://...`, `srt://...`; a folder, which becomes one of HLS; or a
-            file that ends in .m3u8, .mp4, .mkv or .ts.
+        wanted: `rtmp://...`, `rtmps://...`, `srt://...`; a folder, which gets the files of an HLS
+            stream; or a file that ends in .m3u8, .mp4, .mkv or .ts.
 
     Raises:
         UserError: if it is none of these.

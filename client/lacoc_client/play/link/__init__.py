@@ -1,1 +1,1 @@
-"""The link that everybody has: what it says, and what its pages tell commands of the event."""
+"""The link of an event: what it contains, and what its pages tell commands about the event."""

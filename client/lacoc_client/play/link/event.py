@@ -1,4 +1,4 @@
-"""What pages tell commands of their event: its courts, and where they are.
+"""What an event's pages tell commands: its courts and their addresses.
 
 It is public: whoever can open the pages may read it at `event.json`.
 """
@@ -24,20 +24,21 @@ _MOST_BYTES = 1 << 20
 
 
 class LinkedEvent(msgspec.Struct, frozen=True, kw_only=True):
-    """An event, for a command that has a link to it."""
+    """An event, as its pages describe it to a command that has a link."""
 
     protocol: int
     name: str = ""
-    """Name of the contest; "": it has none."""
+    """Name of the contest; "": the event has no name."""
     courts: Mapping[str, tuple[str, ...]] = {}
-    """For each court the addresses at which others find it; none: it plays with pages only."""
+    """For each court the addresses at which others find it; none: the court can be reached through
+    pages only."""
     authority: str = ""
-    """Certificate (PEM) of the event's own authority; "": public ones sign for it, or nothing is
-    encrypted."""
+    """Certificate (PEM) of the event's own authority. "": public authorities signed its
+    certificates, or nothing is encrypted."""
 
 
 class FoundEvent(NamedTuple):
-    """What a link leads to."""
+    """The event to which a link leads."""
 
     link: Link
     event: LinkedEvent
@@ -47,7 +48,7 @@ class FoundEvent(NamedTuple):
         """The courts that a command can reach, with their addresses.
 
         Raises:
-            UserError: if there are none.
+            UserError: if a command can reach none of them.
         """
         found = {name: at for name, at in self.event.courts.items() if at}
         if not found:
@@ -56,7 +57,7 @@ class FoundEvent(NamedTuple):
 
 
 def find(text: str) -> FoundEvent:
-    """Read a link, and ask its pages what it leads to.
+    """Read a link, and ask its pages for the event.
 
     Args:
         text: a link, or the address of pages.

@@ -1,4 +1,4 @@
-"""Keeps a copy of what other pages say about their contest, for a gateway without any secret."""
+"""Copies the contest's sheet and pictures from other pages, for a gateway without any secret."""
 
 import ssl
 import threading
@@ -18,7 +18,7 @@ _EVERY_S = 2.0
 _WAIT_S = 10.0
 _MOST_BYTES = 16 << 20
 _PICTURE_BYTES = 256 << 10
-"""Longest picture of a team that is copied; they are some ten kilobytes long."""
+"""A picture of a team is copied only up to this length; usual ones have some ten kilobytes."""
 
 
 class _TeamOfSheet(msgspec.Struct, frozen=True):
@@ -27,7 +27,7 @@ class _TeamOfSheet(msgspec.Struct, frozen=True):
 
 
 class _TeamsOfSheet(msgspec.Struct, frozen=True):
-    """The part of a sheet that names pictures."""
+    """The part of a sheet that says which teams have a picture."""
 
     teams: tuple[_TeamOfSheet, ...] = ()
 
@@ -35,14 +35,14 @@ class _TeamsOfSheet(msgspec.Struct, frozen=True):
 class SheetMirror:
     """Copies the newest sheet of a contest from its pages into a file; a context manager.
 
-    The pictures of teams that the sheet names are copied first, to where `picture_path` has them:
-    each once, because a picture never changes under its hash. While the pages do not answer, all
-    stays as it was.
+    The pictures of the teams on the sheet are copied first, to the paths of `picture_path`. Each is
+    copied once, because it is named by its hash and never changes. While the pages do not answer,
+    the copies stay as they are.
 
     Args:
         pages: address of the pages.
         authority: certificate (PEM) of the pages' own authority; "": none.
-        path: the file.
+        path: the file for the copy of the sheet.
     """
 
     def __init__(self, pages: str, authority: str, path: Path) -> None:
@@ -51,7 +51,8 @@ class SheetMirror:
         self._path = path
         self._tag = ""
         self._missing: dict[str, Path] = {}
-        """Where pictures of teams go that are not here yet, by the hash of the team's files."""
+        """Paths of the pictures of teams that are still to be copied, by the hash of the team's
+        files."""
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="mirror", daemon=True)
 
@@ -82,7 +83,10 @@ class SheetMirror:
             return
 
     def _copy_pictures(self) -> None:
-        """Copy the pictures that are missing; those that can't be got now stay so."""
+        """Copy the pictures that are missing.
+
+        Those that can't be fetched now are tried again later.
+        """
         for files, path in [*self._missing.items()]:
             try:
                 with self._get(f"pictures/{files}.webp") as answer:
@@ -106,7 +110,10 @@ class SheetMirror:
         return {files: path for files, path in paths.items() if path and not path.exists()}
 
     def _get(self, name: str, tag: str = "") -> HTTPResponse:
-        """Open an answer of the pages; with a tag only if they have something newer."""
+        """Open a request to the pages.
+
+        With a tag, they answer only if they have something newer.
+        """
         asked = urllib.request.Request(f"{self._pages}/{name}", headers={"If-None-Match": tag})
         found = urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context)
         return cast("HTTPResponse", found)

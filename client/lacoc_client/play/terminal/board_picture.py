@@ -1,7 +1,7 @@
 """The field from above, drawn with the characters of a terminal: two pixels a character.
 
-Letters also tell which seat a marker or a robot belongs to, so nothing depends on colours. A
-terminal without colours shows shades instead.
+Letters show to which seat a marker or a robot belongs, so one can read the picture without colours.
+A terminal without colours shows shades of grey instead.
 """
 
 import math
@@ -31,7 +31,8 @@ FALLEN: _Rgb = (58, 62, 68)
 INK_DARK, INK_LIGHT = (16, 18, 20), (245, 245, 245)
 
 _ROBOT_RADIUS_M = 0.12
-"""Radius of a robot with its feet; a ring one pixel wide surrounds it."""
+"""Radius of the disc that is drawn for a robot with its feet; a ring one pixel wide surrounds
+it."""
 _ARROWS = "→↗↑↖←↙↓↘"  # counter-clockwise from +x
 _SHADES = {"floor": " ", "wall": "█", "neutral": "·", "left": "░", "right": "▒", "down": " "}
 _SAMPLES = 4  # samples across a pixel, for smooth edges
@@ -58,7 +59,7 @@ class Field(NamedTuple):
 
 
 class _Mark(NamedTuple):
-    """A character drawn over the picture."""
+    """A character that is drawn over the pixels."""
 
     x_m: float
     y_m: float
@@ -68,11 +69,11 @@ class _Mark(NamedTuple):
 
 
 class PixelGrid:
-    """The pixels of a picture of some size; shared by the pictures of a match.
+    """Maps the floor to the pixels of a picture; all pictures of a match share one.
 
     Args:
         field: the floor.
-        rows: height of the picture in lines of text; its outermost pixels are wall.
+        rows: height of the picture in lines of text; the outermost pixels show the walls.
     """
 
     def __init__(self, field: Field, rows: int) -> None:
@@ -240,6 +241,6 @@ def _mix(colour: _Rgb, other: _Rgb, part: float) -> _Rgb:
 
 
 def _ink(back: _Rgb) -> _Rgb:
-    """Return dark or light ink, whichever can be read on a colour."""
+    """Return the dark or the light ink, whichever can be read better on a colour."""
     red, green, blue = back
     return INK_DARK if 0.3 * red + 0.59 * green + 0.11 * blue > 110 else INK_LIGHT

@@ -19,11 +19,11 @@ from lacoc_shared.words import render, say
 
 _ROWS = (10, 34)
 _SIDE_MIN = 30
-"""Columns that the text beside the board needs."""
+"""Least width of the text beside the board [characters]."""
 
 
 class BoardView:
-    """Draws a court again and again, in the same place."""
+    """Draws the board of a match and a text beside it, again and again in the same place."""
 
     events_above = False
 
@@ -40,7 +40,7 @@ class BoardView:
         Args:
             view: the court.
             events: the new events.
-            silent_s: how long no frame has come [s].
+            silent_s: for how long no frame has come [s].
         """
         self._events.extend(events)
         line = self._line.draw(view, events, silent_s)
@@ -112,7 +112,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
 
 
 def _latest(events: Sequence[Event], sheet: Sheet, rows: int, width: int) -> list[Text]:
-    """Return the latest events that fit as a whole, the newest last."""
+    """Return the latest events that fit completely, the newest last."""
     shown: list[Text] = []
     for event in reversed(events):
         clock, text = event_columns(event, sheet)

@@ -1,6 +1,6 @@
 """Keys from a terminal, one by one, as they are pressed.
 
-Afterwards the terminal is in its usual state again, also after an error.
+When reading ends, also by an error, the terminal gets its former settings back.
 """
 
 import codecs
@@ -41,7 +41,7 @@ _WINDOWS_LOOK_S = 0.005
 
 
 class KeySource(Protocol):
-    """A source of keys."""
+    """A source of keys: a terminal, or a script in a pipe."""
 
     @property
     def ended(self) -> bool:
@@ -52,12 +52,12 @@ class KeySource(Protocol):
 
         Args:
             timeout_s: longest wait [s].
-            playing_s: how long the match has been played [s]; a script goes by this time.
+            playing_s: how long the match has been played [s]; a script's times are counted in it.
             playing: whether the match is being played.
         """
 
     def take_said(self) -> list[Phrase]:
-        """Return what was wrong with the input since the last call."""
+        """Return what was wrong with the input since the last call, as sentences."""
 
 
 class KeyDecoder:
@@ -68,7 +68,7 @@ class KeyDecoder:
         self._rest = ""
 
     def feed(self, data: bytes) -> list[str]:
-        """Decode bytes into names of keys; half an escape sequence waits for its other half."""
+        """Decode bytes into names of keys; keep an incomplete escape sequence for the next call."""
         text = self._rest + self._decoder.decode(data)
         self._rest = ""
         keys: list[str] = []
@@ -90,14 +90,14 @@ class KeyDecoder:
 
 
 def key_name(character: str) -> str | None:
-    """Return the name of a character's key, also if a Japanese input method is on."""
+    """Return the name of a character's key, even if a Japanese input method made the character."""
     character = narrow(character)
     return _NAMES.get(character) or (character.lower() if character.isprintable() else None)
 
 
 @contextmanager
 def open_keys() -> Iterator[KeySource]:
-    """Read keys from standard input: a terminal's as they are pressed, a pipe's as a script."""
+    """Read keys from standard input: a terminal's as they are pressed, or a script from a pipe."""
     if not sys.stdin.isatty():
         yield PipeKeys(sys.stdin.fileno())
     elif sys.platform == "win32":

@@ -24,7 +24,7 @@ PHASE_STYLES = {
 
 
 class LineView:
-    """One live line: phase, clock, teams, score and the newest event."""
+    """Draws one line, in place: phase, clock, teams, score and the newest event."""
 
     events_above = True
 
@@ -37,7 +37,7 @@ class LineView:
         Args:
             view: the court.
             events: the new events.
-            silent_s: how long no frame has come [s].
+            silent_s: for how long no frame has come [s].
         """
         if events:
             self._last = render(events[-1].said)

@@ -1,4 +1,4 @@
-"""Keys of a script that comes through a pipe (`gait.key_script` has its form)."""
+"""Keys of a script that comes through a pipe; `gait.key_script` describes its form."""
 
 import os
 import queue
@@ -13,7 +13,8 @@ _READ_BYTES = 4096
 class PipeKeys:
     """The keys of a script that comes through a pipe.
 
-    Not every system can tell whether a pipe has data, so a thread does nothing but read it.
+    On some systems a program can't see whether a pipe has data, so a thread of its own reads the
+    pipe.
     """
 
     def __init__(self, descriptor: int) -> None:

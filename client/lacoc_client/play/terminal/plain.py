@@ -1,4 +1,4 @@
-"""Frames and events as plain values with names, for programs that read JSON."""
+"""Frames and events as plain values with names, for programs that read LACOC's JSON."""
 
 from typing import Any
 
@@ -55,7 +55,7 @@ def frame_dict(frame: Frame, sheet: Sheet) -> dict[str, Any]:
 
 
 def event_dict(event: Event, sheet: Sheet) -> dict[str, Any]:
-    """Turn an event into plain values: code, values, text, seat by name, clock in seconds."""
+    """Turn an event into plain values: code, values, text, the seat's name, clock in seconds."""
     plain: dict[str, Any] = msgspec.to_builtins(event) | {"text": render(event.said)}
     del plain["clock_ticks"]
     plain["clock_s"] = round(event.clock_ticks * BEAT_S, 2)
@@ -64,13 +64,13 @@ def event_dict(event: Event, sheet: Sheet) -> dict[str, Any]:
 
 
 def reply_dict(reply: DecisionReply) -> dict[str, Any]:
-    """Turn the reply to a decision into plain values, with its sentence as `text`."""
+    """Turn the reply to a decision into plain values; `text` is its sentence."""
     plain: dict[str, Any] = msgspec.to_builtins(reply)
     return plain | {"text": render(reply.said)}
 
 
 def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
-    """Turn an outlook into plain values, its events as `event_dict` does."""
+    """Turn an outlook into plain values; its events become those of `event_dict`."""
     plain: dict[str, Any] = msgspec.to_builtins(outlook)
     del plain["clock_ticks"]
     return plain | {

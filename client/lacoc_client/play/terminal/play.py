@@ -33,7 +33,7 @@ _DRAW_S = 0.1
 _SAID_S = 5.0
 _GONE_S = 120.0
 _LEVEL_NAMES = {Level.POSTURE: "a", Level.LOCOMOTION: "b"}
-"""Names of the levels in the table, below `level-name.`."""
+"""Names of the levels in the table of keys: the last parts of the codes `level-name.*`."""
 
 
 class TerminalPlay:
@@ -43,8 +43,8 @@ class TerminalPlay:
         controller: holds the seat.
         keys: the source of keys.
         folder: folder of Pos-data.txt.
-        is_over: for a team that goes on to another match: returns whether this one is over. None:
-            the contestant stays in the seat, match after match.
+        is_over: returns whether this match is over, for a team that then goes on to another court.
+            None: the contestant stays in the seat, match after match.
     """
 
     def __init__(
@@ -70,11 +70,11 @@ class TerminalPlay:
         self._view_asked = False
         self._leaving = False
         self._goes_on = False
-        """Whether this match is over, and the team goes on to another one."""
+        """Whether this match is over and the team goes on to another one."""
         self._saving = False
 
     def run(self, stopping: Callable[[], bool]) -> bool:
-        """Play until a key, a signal or the end of a script ends it, or the match is over.
+        """Play until the contestant leaves, a signal comes, a script ends, or the match is over.
 
         Returns:
             Whether the team goes on to another match.
@@ -101,7 +101,7 @@ class TerminalPlay:
         return False
 
     def _step(self) -> list[Text]:
-        """Take in keys, frames and events; return the lines to print above the live picture."""
+        """Read keys, frames and events once; return the lines to print above the live picture."""
         controller = self._controller
         frame = self._view.frame
         playing = frame is not None and frame.phase == Phase.PLAYING
@@ -126,7 +126,7 @@ class TerminalPlay:
         return lines
 
     def _press(self, key: str) -> None:
-        """Act on a key."""
+        """Do what a key of the terminal stands for."""
         self._message = ""
         try:
             if key.isdecimal() and len(key) == 1:
@@ -155,7 +155,7 @@ class TerminalPlay:
             self._say(say("terminal.arrows"))
 
     def _change_level(self) -> None:
-        """Change to the next open level; this sends no command."""
+        """Change to the next open level; this sends nothing to the court."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
             self._say(say("terminal.only-level", level=_LEVEL_NAMES[self._level]))
@@ -192,7 +192,7 @@ class TerminalPlay:
         self._said.append(render(what))
 
     def _check_end(self) -> None:
-        """Note whether to go on to the next match, or to leave because the script is done.
+        """Note whether the team goes on to its next match, or leaves because the script is done.
 
         A script is done when it has no more keys and its match is over or has no time limit.
 
@@ -240,10 +240,10 @@ class TerminalPlay:
         return Group(first, second, self._third(now_s))
 
     def _third(self, now_s: float) -> Text:
-        """Return the third line of the picture: the most urgent of the things to say.
+        """Return the third line of the picture: the most urgent one of several messages.
 
-        From most to least urgent: a broken link, a seat that is not held, the answer to a key,
-        the state of the seat, the phase, the list of keys.
+        From most to least urgent: a broken link, a seat that is not held, the answer to a key, the
+        state of the seat, the phase, the list of keys.
         """
         controller, frame = self._controller, self._view.frame
         assert frame is not None
@@ -283,7 +283,7 @@ class TerminalPlay:
 
 
 def keys_table(controller: Controller) -> Table:
-    """Return a table of the keys and what they do in this seat."""
+    """Return a table of the keys of this seat, and of their effects."""
     sheet = controller.view.sheet
     seat = sheet.seats[controller.index]
     table = Table(show_header=False, box=None, padding=(0, 2))

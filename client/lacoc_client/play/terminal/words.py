@@ -1,4 +1,4 @@
-"""Clocks, scores, keys and links as texts, the same on every screen of the terminal."""
+"""Clocks, scores, keys and links as texts for all screens of the terminal."""
 
 from collections.abc import Mapping
 
@@ -11,12 +11,12 @@ from lacoc_shared.words import Phrase, render, say
 
 
 def phase_name(phase: Phase) -> str:
-    """Name a phase: "PLAYING"."""
+    """Return the name of a phase, such as "PLAYING"."""
     return render(say("terminal.phase", phase=phase.name.lower()))
 
 
 def clock(ticks: int) -> str:
-    """Format a time of the clock, rounded up to a second: "2:05"."""
+    """Format a time of the match clock, rounded up to a second, such as "2:05"."""
     seconds = -(-max(0, ticks) // BEATS_PER_S)
     return f"{seconds // 60}:{seconds % 60:02d}"
 
@@ -65,12 +65,12 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
 
 
 def score(frame: Frame) -> str:
-    """Format the score: "18 : 20"."""
+    """Format the score, such as "18 : 20"."""
     return " : ".join(str(seat.score) for seat in frame.seats)
 
 
 def played(sheet: Sheet) -> str:
-    """Say what is played: the fixture that an office assigned ("Semi-final 1"), and the game."""
+    """Return what is played: the match's name in its contest ("Semi-final 1"), and the game."""
     if not sheet.call or sheet.fixture is None:
         return sheet.title
     return f"{render(sheet.fixture)} · {sheet.title}"
@@ -88,7 +88,7 @@ def refusals(refused: Mapping[str, int]) -> str:
 
 
 def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
-    """Return a robot's key, as "B key 2, posture 1/4"; "" before the robot is on the field."""
+    """Return a robot's present key, as "B key 2, posture 1/4"; "" if it is not on the field yet."""
     if not frame.poses:
         return ""
     seat = frame.seats[index]
@@ -105,7 +105,7 @@ def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
 
 
 def place(frame: Frame, sheet: Sheet, seat: str) -> str:
-    """Say where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if there is none."""
+    """Return where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if there is none."""
     pose = poses(frame, sheet).get(seat)
     if pose is None:
         return ""
@@ -116,7 +116,7 @@ def place(frame: Frame, sheet: Sheet, seat: str) -> str:
 
 
 def seat_state(seat: SeatFrame) -> str:
-    """Say why a seat's keys do nothing now, or that it is silent; "" if all is well."""
+    """Return why a seat's keys do nothing now, or that the seat is silent; "" in other cases."""
     flags = SeatFlag(seat.flags)
     if SeatFlag.FROZEN in flags:
         return render(say("terminal.frozen", seconds=_wait_s(seat)))
@@ -126,7 +126,7 @@ def seat_state(seat: SeatFrame) -> str:
 
 
 def link(silent_s: float) -> str:
-    """Return a banner if no frames come; "" while they come."""
+    """Return a banner that says for how long no frame has come; "" while frames come."""
     if silent_s < SILENT_AFTER_S:
         return ""
     return render(say("terminal.no-word", seconds=silent_s))

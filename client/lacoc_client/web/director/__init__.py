@@ -1,7 +1,8 @@
 """The director: which courts are shown, and why. All but `programme` is pure.
 
-`courts` describes a court at one time, `stakes` weighs what a match is in its contest, `moments`
-finds what is worth seeing, `plan` compares which cuts to make in the next seconds, `director`
-chooses the court on air, `aside` the one in the second picture, and `results` keeps the newest
-results. `programme` looks at a gateway's courts, asks the director, and shows what it chooses.
+`courts` describes a court at one time. `stakes` says how important a match is in its contest.
+`moments` finds what is worth seeing. `plan` compares which cuts to make in the next seconds.
+`director` chooses the court on air, `aside` the one in the second picture. `results` keeps the
+newest results. `programme` looks at a gateway's courts, asks the director, and shows what it
+chooses.
 """

@@ -6,20 +6,21 @@ from lacoc_client.web.director.moments import LiveMoment
 from lacoc_client.web.director.plan import LEAST_S
 
 ASIDE_SHARE = 0.12
-"""The second picture shows the best moments: this share of all."""
+"""Only the best moments are good enough for the second picture: this share of all."""
 ASIDE_WHYS = ("swing", "lead")
-"""Only these moments are worth it. When a match begins or ends, there is nothing to see at once."""
+"""Only moments of these kinds are shown: when a match begins or ends, there is nothing to see at
+once."""
 _STAYS_S = 2.5
-"""So long after its moment the second picture stays [s]."""
+"""The second picture stays for this time after its moment [s]."""
 
 
 class Aside:
-    """Says which court is in the second picture.
+    """Chooses the court in the second picture.
 
-    The second picture shows a moment for which no cut is worth it or allowed. It comes with the
-    moment and goes soon after, and never shows the court on air. Going on to the next moment is no
-    cut, so it needs none of the few cuts of a minute. Each court stays at least two seconds, if it
-    does not vanish or come on air.
+    The second picture shows moments for which a cut is not worth it or not allowed. It appears at
+    the moment, disappears soon after, and never shows the court on air. A change to the next moment
+    is no cut, so it does not use up one of the few cuts of a minute. Each court stays at least two
+    seconds, unless it vanishes or comes on air.
     """
 
     def __init__(self) -> None:
@@ -34,7 +35,7 @@ class Aside:
         Args:
             shown_s: the time that is shown; it never goes back [s].
             on_air: the court on air.
-            there: the courts that can be shown.
+            there: names of the courts that can be shown.
             best: the best moments that begin now, at any of these courts.
 
         Returns:
@@ -55,7 +56,7 @@ class Aside:
         return now
 
     def _goes_on(self, shown_s: float, now: LiveMoment, next_: LiveMoment) -> bool:
-        """Return whether the second picture leaves a moment for another one."""
+        """Return whether the second picture should change from a moment to another one."""
         if now.court == next_.court:
             return next_.at_s > now.at_s
         has_been = now.at_s <= shown_s or now.points < next_.points

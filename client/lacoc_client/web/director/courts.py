@@ -1,4 +1,4 @@
-"""What the director knows of a court at one time. Pure."""
+"""What the director sees of a court at one time. Pure."""
 
 from typing import NamedTuple
 
@@ -6,34 +6,35 @@ from lacoc_client.web.director.stakes import USUAL
 from lacoc_shared.seat import Phase
 
 LAST_S = 30.0
-"""The last part of a match, from which the director never cuts away while it is close [s]."""
+"""Length of the last part of a match [s]: in it the director does not cut away from a close
+match."""
 
 _CLOSE = 0.2
 """A match is close while the difference is at most this share of all points."""
 
 OVER = (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
-"""Phases after the end of a match: it has a result, or is void."""
+"""The phases after the end of a match: the match has a result, or is void."""
 
 
 class CourtNow(NamedTuple):
-    """A court at one time."""
+    """How a court stands at one time."""
 
     name: str
     match: str
-    """Names the match. Points and moments of one match do not carry over to the next."""
+    """Id of the match. Points and moments of one match do not carry over to the next."""
     phase: Phase
     left_s: float | None
     """Time left of the match [s]; None: it has no time limit."""
     scores: tuple[int, ...]
-    """Points by seat."""
+    """Points of each seat."""
     stake: float = USUAL
-    """How much the match counts; `stakes.stake`."""
+    """Weight of the match in its contest; see `stakes.stake`."""
     has_begun: bool = False
-    """Whether the clock of the match has run: a countdown then resumes a halted match."""
+    """Whether the clock of the match has run. If so, a countdown resumes a halted match."""
 
     @property
     def ahead(self) -> int:
-        """Points by which the first seat leads; negative: the second one does."""
+        """Points by which the first seat leads; negative: the second seat leads."""
         return self.scores[0] - self.scores[1] if len(self.scores) > 1 else 0
 
     @property
@@ -43,7 +44,10 @@ class CourtNow(NamedTuple):
 
     @property
     def is_played(self) -> bool:
-        """Whether the match is played, or interrupted: halted, or in the countdown after a halt."""
+        """Whether the match has begun and is not over.
+
+        It may be halted or count down after a halt.
+        """
         resumes = self.phase is Phase.COUNTDOWN and self.has_begun
         return resumes or self.phase in (Phase.PLAYING, Phase.HALTED)
 

@@ -16,70 +16,70 @@ AHEAD_S = 20.0
 RESULT_S = 6.0
 """A result stays on air at least for this time [s]."""
 _EARLY_S = 1.0
-"""A cut comes this much before its moment, if the moment is known in time [s]."""
+"""A cut is made this long before its moment, if the moment is known in time [s]."""
 _LATE_S = 0.5
-"""A moment that is over for longer than this is no reason to cut [s]."""
+"""A moment that happened longer ago than this is no reason for a cut [s]."""
 _EMPTY_MOST_S = 20.0
-"""After so long without play even the last cut of a minute is spent on a court with play [s]."""
+"""If the court on air has had no play for this long, even the last cut of the minute is used to
+show a court with play [s]."""
 _KNOWN_S = 180.0
-"""The moments of this last time decide what moments and cuts are worth [s]."""
+"""Moments and cuts are valued by comparison with the moments of this last time [s]."""
 
 Why = Moving | Literal["first", "played", "gone"]
-"""Why a court is on air: a moment, or
+"""Why a court is on air: the kind of a moment, or
 
-first: nothing was on air before. played: nothing is played at the court shown before, and a match
-is played here. gone: the court shown before has vanished.
+first: nothing was on air before. played: at the court shown before nothing is played, and here a
+match is played. gone: the court shown before has vanished.
 """
 
 
 class OnAir(NamedTuple):
-    """What is on air."""
+    """The court that is on air."""
 
     court: str
     why: Why
     since_s: float
-    """When it came on air, by the time that is shown [s]."""
+    """When it came on air, in the time that is shown [s]."""
 
 
 class Director:
-    """Looks at all courts several times a second, and says which one is on air.
+    """Chooses which court is on air, from a look at all courts several times a second.
 
-    What is on air is shown later than it is played, by `ahead_s`. So the director knows what comes,
-    and cuts to a moment before it happens. It never cuts away from the last 30 s of a close match
-    nor from a fresh result, and never cuts more than four times in any minute. Only a court that
-    has vanished is left in spite of the first two rules. A second picture shows the best moments
-    at other courts.
+    All courts are shown `ahead_s` later than they are played. So the director knows what comes, and
+    cuts to a moment before it happens. It never cuts away from the last 30 s of a close match nor
+    from a fresh result, and never cuts more than four times in any minute. The first two rules do
+    not hold for a court that has vanished. A second picture shows the best moments at other courts.
 
     Args:
-        ahead_s: how much later all is shown [s].
+        ahead_s: how much later everything is shown than it is played [s].
     """
 
     def __init__(self, ahead_s: float = AHEAD_S) -> None:
         self._ahead_s = ahead_s
         self._shot: OnAir | None = None
         self._looks: deque[tuple[float, Mapping[str, CourtNow]]] = deque()
-        """The looks with their times, from the one that is shown now to the newest."""
+        """All looks with their times, from the look that is shown now to the newest."""
         self._tracks: dict[str, Track] = {}
         self._moments: deque[LiveMoment] = deque()
-        """The moments of the last minutes and those that come, in the order of time."""
+        """The moments of the last minutes, also those that are not shown yet, in the order of
+        time."""
         self._cuts: deque[float] = deque(maxlen=CUTS_MOST)
         self._aside = Aside()
         self.aside: LiveMoment | None = None
-        """What the second picture shows; None: there is none now."""
+        """The moment that the second picture shows; None: there is no second picture now."""
         self._empty: tuple[str, str, float] = ("", "", 0.0)
-        """The court on air, its match, and since when it is on air without play."""
+        """The court on air, its match, and since when nothing has been played there [s]."""
 
     def look(self, now_s: float, courts: Sequence[CourtNow]) -> OnAir | None:
-        """Take in how all courts stand, and choose.
+        """Take a look at all courts, and choose the court on air.
 
         Args:
             now_s: the time, by a clock that never goes back [s].
             courts: every court that can be shown; a court that is missing has vanished.
 
-        Returns:
-            What is on air. Courts are shown late, as they were `ahead_s` ago. In the first
-            `ahead_s` seconds they are shown as they were at the first look. None: no court was
-            there up to the shown time.
+        Returns: The court on air. The choice uses the courts as they were `ahead_s` ago, which is
+        what pages show; in the first `ahead_s` seconds, as they were at the first look. None: there
+        was no court at the shown time or before.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s
@@ -113,13 +113,13 @@ class Director:
             self._moments.popleft()
 
     def _coming(self, shown_s: float) -> list[LiveMoment]:
-        """Return the moments that are not over, at any court."""
+        """Return the moments of all courts that are not over yet."""
         return [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
 
     def _next(
         self, shown_s: float, shown: Mapping[str, CourtNow], shot: OnAir, due: Sequence[LiveMoment]
     ) -> OnAir | None:
-        """Return what to cut to, of the courts and the moments that begin now; None: stay."""
+        """Return what to cut to now, a moment or a court with play; None: stay at this court."""
         now = shown.get(shot.court)
         if now is None:
             return OnAir(self._richest(shown_s, shown), "gone", shown_s) if shown else None
@@ -139,7 +139,7 @@ class Director:
         return None
 
     def _note_empty(self, shown_s: float, now: CourtNow | None) -> None:
-        """Note since when the court on air is without play."""
+        """Note since when nothing is played at the court on air."""
         if now is not None and (now.is_played or self._empty[:2] != (now.name, now.match)):
             self._empty = (now.name, now.match, shown_s)
 
@@ -154,14 +154,14 @@ class Director:
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
 
     def _best(self, due: Sequence[LiveMoment]) -> list[LiveMoment]:
-        """Return those moments that are worth a second picture."""
+        """Return those of the moments that are good enough for the second picture."""
         if not due:
             return []
         least = Prices(self._moments).least(ASIDE_SHARE)
         return [one for one in due if one.points >= least and one.why in ASIDE_WHYS]
 
     def _locked(self, court: str, at_s: float) -> bool:
-        """Return whether a court has a close end or a fresh result at a time."""
+        """Return whether at a time a cut away is forbidden: a close end, or a fresh result."""
         now = self._at(court, at_s)
         if now is None or not now.is_over:
             return now is not None and now.is_closing
@@ -169,12 +169,12 @@ class Director:
         return before is not None and before.is_played
 
     def _at(self, court: str, at_s: float) -> CourtNow | None:
-        """Return how a court stood at a time, by the first look from then on."""
+        """Return how a court stood at a time, from the first look at or after it."""
         index = bisect_left(self._looks, at_s, key=lambda look: look[0])
         return self._looks[min(index, len(self._looks) - 1)][1].get(court)
 
     def _richest(self, shown_s: float, shown: Mapping[str, CourtNow]) -> str:
-        """Return the court to show: one where a match is played, with the largest moments soon.
+        """Return the court to show: one with play, and with the largest moments soon.
 
         Of equal ones it is the one with the highest stake, then the first.
         """

@@ -6,17 +6,18 @@ from typing import Literal, NamedTuple
 from lacoc_client.web.director.courts import CourtNow
 
 LEAD_POINTS = 2.0
-"""A change of the lead adds this to the worth of a swing [points]."""
+"""A swing that changes which seat leads is worth so many points more."""
 CLOSING_POINTS = 4.0
-"""The last 30 s of a close match are worth a swing of so many points."""
+"""The beginning of the last 30 s of a close match is worth as much as a swing of so many points."""
 _STAKE_POINTS = 4.0
-"""The beginning of a match with a stake of 2 is worth a swing of so many points."""
+"""The beginning of a match with a stake of 2 is worth as much as a swing of so many points."""
 
 Why = Literal["lead", "swing", "closing", "stake"]
-"""What makes a moment.
+"""The kind of a moment.
 
-lead: another seat leads. swing: the difference in points changed. closing: the last 30 s of a close
-match begin, or a match becomes close in them. stake: a match with more than the usual stake begins.
+lead: another seat leads now. swing: the difference in points changed. closing: the last 30 s of a
+close match begin, or a match becomes close in them. stake: a match with more than the usual stake
+begins.
 """
 
 
@@ -26,24 +27,20 @@ class LiveMoment(NamedTuple):
     at_s: float
     court: str
     points: float
-    """What it is worth, as a swing of so many points at a match of the usual stake."""
+    """How good it is, as the points of an equally good swing at a match of the usual stake."""
     why: Why
 
 
 class Track:
-    """Follows one court, and finds its moments.
-
-    Args:
-        now: the court at the first look.
-    """
+    """Follows one court, and finds the moments at it."""
 
     def __init__(self, now: CourtNow) -> None:
         self._now = now
         self._leader = _sign(now.ahead)
-        """Sign of the last difference that was not 0."""
+        """Sign of the last difference in points that was not 0."""
 
     def see(self, now_s: float, now: CourtNow) -> Iterator[LiveMoment]:
-        """Take in how the court stands; yield the moments since the last look.
+        """Compare the court with the last look, and yield the moments in between.
 
         Args:
             now_s: the time of the look [s].

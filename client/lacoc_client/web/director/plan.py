@@ -13,24 +13,25 @@ LEAST_S = 2.0
 """Least time between two cuts [s]."""
 
 _RANKS = (0.03, 0.05, 0.1, 0.2)
-"""The best moments that are worth a cut while 1, 2, 3 or 4 cuts are left, as a share of all."""
+"""While 1, 2, 3 or 4 cuts of the minute are left, only the best moments are worth a cut: these
+shares of all moments."""
 _NEARLY = 0.9
-"""A cut costs this part of the value of the least of those moments."""
+"""A cut costs this part of the value of the worst moment that is still worth a cut."""
 _LOOKED_AT = 0.15
-"""Only the best moments have a value: this share of all."""
+"""Only the best moments have any value: this share of all."""
 _KNOWN_LEAST = 20
-"""With fewer moments known, `_AT_FIRST` stands for them."""
+"""While fewer moments than this are known, `_AT_FIRST` is used instead of them."""
 _AT_FIRST = 6.0
-"""What the best tenth of all moments is assumed to be worth at least [points]."""
+"""Assumed points of the worst moment of the best tenth."""
 _MOST = 8
-"""Most moments to come that are compared."""
+"""Most coming moments that are compared."""
 
 
 def cuts_left(cuts: Sequence[float], at_s: float) -> int:
-    """Return how many cuts are left for the minute that ends now.
+    """Return how many cuts are left in the minute that ends at a time.
 
     Args:
-        cuts: the times of earlier cuts.
+        cuts: the times of earlier cuts [s].
         at_s: the time [s].
     """
     return CUTS_MOST - sum(at_s - one <= MINUTE_S + _SPARE_S for one in cuts)
@@ -42,10 +43,7 @@ def may_cut(cuts: Sequence[float], at_s: float) -> bool:
 
 
 def worth(points: float) -> float:
-    """Return what a moment of so many points is worth on air: their cube.
-
-    So one swing of ten points is worth as much as eight swings of five.
-    """
+    """Return what it is worth to show a moment of so many points: their cube."""
     return points**3
 
 
@@ -53,7 +51,7 @@ class Prices:
     """What moments and cuts are worth, compared with all moments of the last minutes.
 
     Args:
-        known: those moments, at all courts.
+        known: the moments of the last minutes at all courts.
     """
 
     def __init__(self, known: Sequence[LiveMoment]) -> None:
@@ -62,7 +60,7 @@ class Prices:
         self._costs = [_NEARLY * worth(self.least(share)) for share in _RANKS]
 
     def value(self, moment: LiveMoment) -> float:
-        """Return what a moment is worth on air; all but the best moments are worth 0."""
+        """Return what it is worth to show a moment; 0 for all but the best moments."""
         return worth(moment.points) if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
@@ -70,7 +68,7 @@ class Prices:
         return self._costs[left - 1]
 
     def least(self, share: float) -> float:
-        """Return the points of the least of the best moments, which are this share of all."""
+        """Return the points of the worst of the best moments; these are a share of all."""
         if len(self._sorted) < _KNOWN_LEAST:
             return _AT_FIRST * math.sqrt(0.1 / share)
         return self._sorted[max(0, int(len(self._sorted) * share) - 1)]
@@ -84,15 +82,15 @@ def is_worth_it(
     prices: Prices,
     locked: Callable[[str, float], bool],
 ) -> bool:
-    """Return whether to cut to a moment, or rather to stay and cut to a later one.
+    """Return whether to cut to a moment now, or to stay and cut to a later one.
 
     Args:
         on_air: the court on air.
         moment: a moment that begins now, at a court that is not on air.
         coming: all other moments that are known and not over, at any court.
-        cuts: the times of earlier cuts.
+        cuts: the times of earlier cuts [s].
         prices: what moments and cuts are worth.
-        locked: tells whether a cut away from a court is forbidden at a time.
+        locked: returns whether a cut away from a court is forbidden at a time.
     """
     gain = prices.value(moment)
     if not gain:
@@ -103,7 +101,7 @@ def is_worth_it(
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
         """Return the largest gain from `ahead[index]` on, with `court` on air after these cuts.
 
-        The gain is the worth of all moments that are on air, less the costs of the cuts to them.
+        The gain is the worth of all moments that are shown, less the costs of the cuts to them.
         """
         if index == len(ahead):
             return 0.0

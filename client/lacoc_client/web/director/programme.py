@@ -1,4 +1,4 @@
-"""Shows the courts that the director chooses to all pages that follow it."""
+"""Shows the courts that the director chooses, on all pages that follow the director."""
 
 import asyncio
 import math
@@ -20,7 +20,7 @@ from lacoc_client.web.gateway.wire import MessageKind
 from lacoc_shared.seat import BEAT_S
 
 _LOOKS = 5
-"""Beats between two looks of the director."""
+"""Number of beats between two looks of the director."""
 
 
 class Channel:
@@ -33,18 +33,18 @@ class Channel:
         self._viewers: dict[Viewer, None] = {}
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page see it; send it everything that is known of its court."""
+        """Let a page see this picture, and send it all that is known of the court."""
         assert self._late is not None
         self._viewers[viewer] = None
         viewer.send(self._told)
         self._late.add(viewer)
 
     def has(self, viewer: Viewer) -> bool:
-        """Return whether a page sees it."""
+        """Return whether a page sees this picture."""
         return viewer in self._viewers
 
     def remove(self, viewer: Viewer) -> None:
-        """Let a page see it no longer."""
+        """Let a page no longer see this picture."""
         if viewer in self._viewers:
             assert self._late is not None
             del self._viewers[viewer]
@@ -55,7 +55,7 @@ class Channel:
 
         Args:
             late: the late feed of the court.
-            told: the programme message that says so.
+            told: the programme message that names the court, and says why it is shown.
         """
         if told == self._told:
             return
@@ -69,7 +69,7 @@ class Channel:
 
 
 class Programme:
-    """What is on air; used from the event loop only, except `audience`.
+    """The two pictures that the director fills; used from the event loop only, except `audience`.
 
     It begins with the first page that follows the director, and goes on until the gateway ends.
     Everything is shown `AHEAD_S` later than it is played, unless there is only one court.
@@ -96,12 +96,12 @@ class Programme:
         (self._second if aside else self._first).add(viewer)
 
     def remove(self, viewer: Viewer) -> None:
-        """Let a page follow no longer."""
+        """Let a page no longer follow the director."""
         self._first.remove(viewer)
         self._second.remove(viewer)
 
     def seen_by(self, viewer: Viewer) -> Audience | None:
-        """Return the pages that see the same court as a page that follows."""
+        """Return the pages that see the same court as a page that follows the director."""
         for channel in (self._first, self._second):
             if channel.has(viewer):
                 return self.audience(channel.court)
@@ -116,7 +116,12 @@ class Programme:
         return None if late is None else late.audience
 
     def others(self, can_act: bool, but: Viewer | None = None) -> int:
-        """Count the pages that follow and may act, or only watch, but for one."""
+        """Count the pages that follow the director: those that may act, or those that only watch.
+
+        Args:
+            can_act: which of the two to count.
+            but: a page that is not counted.
+        """
         return sum(late.audience.others(can_act, but) for late in list(self._late.values()))
 
     def stop(self) -> None:
@@ -144,7 +149,7 @@ class Programme:
                 self._look(now_s)
 
     def _look(self, now_s: float) -> None:
-        """Let the director look at all courts, and show what it chooses."""
+        """Let the director look at all courts, and show the courts that it chooses."""
         courts: list[CourtNow] = []
         over: list[ShownResult] = []
         for feed in self._feeds():
@@ -163,7 +168,7 @@ class Programme:
         self._tell(now_s, first, shot.why if shot else "first", self._director.aside)
 
     def _tell(self, now_s: float, court: str, why: str, aside: LiveMoment | None) -> None:
-        """Show the courts that are on air, and tell the pages why, if that has changed."""
+        """Show the chosen courts in both pictures, and tell the pages if the choice has changed."""
         behind = {
             "behind_s": self._behind_s,
             "begins_s": max(0, math.ceil(self._begins_s - now_s)),

@@ -1,4 +1,4 @@
-"""The newest result of each court, as late as everything else is shown. Pure."""
+"""The newest result of each court, shown as late as everything else. Pure."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -9,19 +9,19 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 
 _SHOWN = 6
-"""Most results that are shown."""
+"""How many results are shown at most."""
 
 
 class ShownResult(msgspec.Struct, frozen=True):
-    """How a match ended."""
+    """The result of a match, as it is shown."""
 
     court: str
     match: str
-    """Names the match."""
+    """Id of the match."""
     title: str
     """Title of the game."""
     fixture: Phrase | None
-    """What the match is in its contest; None: it is in none."""
+    """The name of the match in its contest; None: it is in no contest."""
     teams: tuple[str, ...]
     """Names of the teams by seat."""
     scores: tuple[int, ...]
@@ -32,27 +32,27 @@ class Results:
     """Keeps the newest result of each court.
 
     Args:
-        behind_s: how long after a result is known it is shown [s].
+        behind_s: how long after a result became known it is shown [s].
     """
 
     def __init__(self, behind_s: float) -> None:
         self._behind_s = behind_s
         self._known: dict[str, ShownResult] = {}
-        """By court, the newest last."""
+        """The newest result of each court; the newest of all is the last."""
         self._later: deque[tuple[float, tuple[ShownResult, ...]]] = deque()
-        """What is shown from a time on."""
+        """Pairs of a time and the results that are shown from then on."""
         self._shown: tuple[ShownResult, ...] = ()
 
     def see(
         self, now_s: float, over: Sequence[ShownResult], going: Sequence[tuple[str, str]]
     ) -> None:
-        """Take in how the courts stand.
+        """Note which matches are over and which are not.
 
         Args:
             now_s: the time, by a clock that never goes back [s].
             over: the matches that are over; a referee may still correct one.
             going: court and match of each match that is not over. If such a match was over before,
-                as it may be when a referee corrects it, its result is dropped.
+                because a referee corrects its end, its result is dropped.
         """
         before = tuple(self._known.values())
         for court, match in going:
@@ -67,7 +67,7 @@ class Results:
             self._later.append((now_s + self._behind_s, after))
 
     def shown(self, now_s: float) -> tuple[ShownResult, ...]:
-        """Return what is shown at a time, the newest first."""
+        """Return the results that are shown at a time, the newest first."""
         while self._later and self._later[0][0] <= now_s:
             self._shown = self._later.popleft()[1]
         return self._shown[-_SHOWN:][::-1]

@@ -1,9 +1,9 @@
-"""How much a match counts, by what it is in its contest. Pure."""
+"""How important a match is, by its place in the contest. Pure."""
 
 from lacoc_shared.words import Phrase
 
 USUAL = 1.0
-"""Weight of a match whose stake is not known."""
+"""Weight of a match whose place in the contest is not known."""
 
 _WEIGHTS = {
     "fixture.deciding-final": 3.0,
@@ -14,7 +14,8 @@ _WEIGHTS = {
     "fixture.knockout": 1.25,
     "fixture.losers": 1.25,
 }
-"""By the code of the match in its contest; all others count as usual."""
+"""Weights by the code of the match's name (`fixture.*`); all other matches have the usual
+weight."""
 
 _LAST_GAME = 1.25
 """Factor for the last game that a match can have: it often decides the match."""
@@ -24,7 +25,7 @@ def stake(fixture: Phrase | None) -> float:
     """Return the weight of a match.
 
     Args:
-        fixture: what the match is in its contest, a phrase of `fixture.*`; None: no contest.
+        fixture: the name of the match in its contest (`fixture.*`); None: it is in no contest.
 
     Returns:
         `USUAL` or more.

@@ -1,4 +1,4 @@
-"""Answers to a page's requests: at once, later, or from another thread."""
+"""Answers the requests of a page: at once, later, or from another thread."""
 
 import asyncio
 import time
@@ -36,14 +36,16 @@ class Answers:
         self._viewer.send(wire.reply(to, value))
 
     def refuse(self, to: int, error: UserError | FileRefused) -> None:
-        """Answer that a request was not done, and why."""
+        """Answer that a request was refused, and why."""
         self._viewer.send(wire.refusal(to, error))
         # The sentences contain no token. A page gets one refusal a second into the log, on average.
         if self._logged.take(1, time.monotonic()):
             self._log(f"Refused: {error}", "refused")
 
     def later(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
-        """Answer with the result of a coroutine, and go on reading meanwhile.
+        """Answer with the result of a coroutine when it is done.
+
+        The page's next requests do not wait for it.
 
         Raises:
             UserError: if too many requests are open already.
@@ -65,7 +67,7 @@ class Answers:
             raise
 
     def from_thread(self, to: int) -> Callable[[Any, UserError | FileRefused | None], None]:
-        """Make a function that sends the answer; any thread may call it."""
+        """Make a function that sends the answer to a request; any thread may call this function."""
         loop = asyncio.get_running_loop()
 
         def answer(value: Any, error: UserError | FileRefused | None) -> None:
@@ -77,7 +79,7 @@ class Answers:
         return answer
 
     def stop(self) -> None:
-        """Cancel the open requests: nobody waits for them any more."""
+        """Cancel the open requests, because the page has gone."""
         for task in self._tasks:
             task.cancel()
 
@@ -85,7 +87,7 @@ class Answers:
 def in_future(
     future: "asyncio.Future[Any]", value: Any, error: UserError | FileRefused | None
 ) -> None:
-    """Give a future its result; any thread may call it."""
+    """Set the result or the error of a future; any thread may call this."""
 
     def settle() -> None:
         if future.done():
@@ -99,7 +101,7 @@ def in_future(
 
 
 def in_loop(loop: asyncio.AbstractEventLoop, do: Callable[[], None]) -> None:
-    """Call a function on the event loop's thread, unless the loop has ended."""
+    """Call a function on the event loop's thread; if the loop has ended, do nothing."""
     try:
         loop.call_soon_threadsafe(do)
     except RuntimeError:

@@ -6,36 +6,36 @@ from lacoc_client.web.gateway.viewer import Frames, Viewer
 
 
 class Listener(Protocol):
-    """Receives all that a court sends, as a page does, but is no page."""
+    """Receives everything that a court sends, as a page does, but is not a page."""
 
     def send(self, framed: bytes) -> None:
         """Take a message that must arrive."""
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Take a message that may be missed."""
+        """Take a message that may be left out."""
 
     def offer(self, framed: bytes, now_s: float) -> None:
         """Take a frame that came at a time [s]."""
 
 
 class Audience:
-    """The pages that receive what a court sends; used from the event loop only."""
+    """The pages that watch one court; used from the event loop only."""
 
     def __init__(self) -> None:
         self._viewers: dict[Viewer, None] = {}
         self._listeners: list[Listener] = []
         self._gone = Frames()
-        """Frame counts of pages that have gone."""
+        """Frame counts of the pages that have gone, all together."""
 
     def __len__(self) -> int:
         return sum(one.is_page for one in self._viewers)
 
     def add(self, viewer: Viewer) -> None:
-        """Add a page, which gets everything from now on."""
+        """Add a page, which receives everything from now on."""
         self._viewers[viewer] = None
 
     def tap(self, listener: Listener) -> None:
-        """Let a listener have everything from now on, beside the pages; it counts as no page."""
+        """Add a listener, which receives everything from now on and does not count as a page."""
         self._listeners.append(listener)
 
     def remove(self, viewer: Viewer) -> None:
@@ -46,7 +46,12 @@ class Audience:
             self._gone.dropped += viewer.frames.dropped
 
     def others(self, can_act: bool, but: Viewer | None = None) -> int:
-        """Count the pages that may act, or those that only watch, but for one."""
+        """Count the pages of one kind: those that may act, or those that only watch.
+
+        Args:
+            can_act: which of the two to count.
+            but: a page that is not counted.
+        """
         places = (one for one in self._viewers if one.is_page and one is not but)
         return sum(one.can_act == can_act for one in places)
 
@@ -62,18 +67,21 @@ class Audience:
                 one.send(framed)
 
     def tell(self, framed: bytes) -> None:
-        """Send the pages what is no part of the match; a slow page misses it."""
+        """Send the pages a message that is not about the match; a slow page does not get it."""
         for viewer in self._viewers:
             viewer.send_if_fast(framed)
 
     def send_own(self, framed: bytes) -> None:
-        """Send a message that must arrive, to the pages of whoever started the gateway."""
+        """Send a message that must arrive to all pages of the person who started the gateway."""
         for viewer in self._viewers:
             if viewer.is_own:
                 viewer.send(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message to the pages that keep up; a slow page misses it and gets a later one."""
+        """Send a message to the pages that keep up.
+
+        A slow page gets a later message of this kind.
+        """
         for one in (*self._viewers, *self._listeners):
             one.send_if_fast(framed)
 

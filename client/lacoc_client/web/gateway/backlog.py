@@ -1,4 +1,4 @@
-"""What a page needs when it comes: the newest message of each kind, and all events."""
+"""Keeps the messages that a new page needs: the newest of each kind, and all events."""
 
 import msgspec
 
@@ -19,20 +19,20 @@ _OF_ALL_COURTS = (MessageKind.WELCOME, MessageKind.NOTICE, MessageKind.PROGRAMME
 
 
 class _LinkHead(msgspec.Struct):
-    """The fields of a link message that say which earlier messages still count."""
+    """The fields of a link message that say which earlier messages are still valid."""
 
     connected: bool
     log: int
 
 
 class _ProgrammeHead(msgspec.Struct):
-    """The field of a programme message that says which court follows."""
+    """The field of a programme message that says which court the next messages are about."""
 
     court: str
 
 
 class Backlog:
-    """Keeps what was sent to pages, as far as a page that comes now needs it."""
+    """Keeps those messages sent to pages that a page needs which comes now."""
 
     def __init__(self) -> None:
         self._newest: dict[MessageKind, bytes] = {}
@@ -41,7 +41,7 @@ class Backlog:
         self._court = ""
 
     def take(self, framed: bytes) -> None:
-        """Take in a message that was sent."""
+        """Note a message that was sent to pages."""
         kind, payload = wire.opened(framed)
         if kind is MessageKind.EVENT:
             self._events[framed] = None

@@ -1,4 +1,4 @@
-"""Reads the body of a request, as far as it may be long."""
+"""Reads the body of a request, up to a greatest length."""
 
 from starlette.requests import Request
 
@@ -13,7 +13,7 @@ async def read_body(request: Request, most: int) -> bytes:
         most: longest body [bytes].
 
     Raises:
-        UserError: if it is longer.
+        UserError: if the body is longer.
     """
     data = b""
     async for part in request.stream():

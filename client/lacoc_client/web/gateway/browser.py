@@ -1,8 +1,8 @@
 """Opens a page in this person's browser, without a secret in a command line.
 
 Every user of a machine can read the command lines of all programs, and a browser gets the address
-of a page in its command line. So an address with a page key is written into a file that only its
-owner can read. The browser opens the file, which redirects to the address.
+of a page in its command line. So the address with the page key is written into a file that only
+this person can read. The browser opens the file, which redirects to the address.
 """
 
 import html
@@ -25,9 +25,9 @@ _LEADS_ON = (
 
 @contextmanager
 def unseen(address: str) -> Iterator[str]:
-    """Give an address that leads to `address` without showing it; valid until the block ends.
+    """Yield an address that leads to `address` without containing it; valid until the block ends.
 
-    If no file can be written, give `address` itself.
+    If no file can be written, yield `address` itself.
 
     Args:
         address: an address with a page key in its fragment.

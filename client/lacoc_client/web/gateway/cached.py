@@ -1,4 +1,4 @@
-"""Answers that a browser, or a proxy on the way, may keep; each says for how long."""
+"""Answers that a browser, or a proxy on the way, may keep; each answer says for how long."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -11,22 +11,24 @@ from starlette.responses import FileResponse, Response
 from lacoc_client.web.gateway.files import PageFile, page_file
 
 FOR_EVER = "public, max-age=31536000, immutable"
-"""For what never changes under its name: assets, whose names contain their hash, and records."""
+"""For things that never change under their name: records, and assets, whose names contain their
+hash."""
 ASK_AGAIN = "no-cache"
-"""For what changes: the browser asks whether what it has is still the newest."""
+"""For things that change: the browser asks each time whether its copy is still the newest."""
 A_SECOND = "public, max-age=1"
-"""For what a crowd asks again and again: a proxy that keeps it asks once a second for all."""
+"""For things that a crowd asks for again and again: a proxy then asks the gateway only once a
+second."""
 
 _packed = lru_cache(maxsize=16)(page_file)
 
 
 def file_response(request: Request, file: PageFile, cache: str) -> Response:
-    """Answer with a file; only that nothing has changed, if the browser has it.
+    """Answer with a file, or that it has not changed if the browser has this version.
 
     Args:
         request: the request.
         file: the file.
-        cache: how long it may be kept.
+        cache: how long the answer may be kept.
     """
     tag = f'W/"{file.hash}"'
     headers = {"Cache-Control": cache, "Vary": "Accept-Encoding", "ETag": tag}
@@ -40,13 +42,13 @@ def file_response(request: Request, file: PageFile, cache: str) -> Response:
 
 
 def json_response(request: Request, found: Any) -> Response:
-    """Answer with what changes all the time and many pages ask for."""
+    """Answer with JSON that changes all the time and that many pages ask for."""
     file = _packed(msgspec.json.encode(found), "application/json")
     return file_response(request, file, A_SECOND)
 
 
 def large_response(request: Request, path: Path, media_type: str, cache: str) -> Response:
-    """Answer with a file that is too large to be kept here; else as `file_response`.
+    """Answer with a file that is too large for this program's memory; else as `file_response`.
 
     Raises:
         OSError: if the file has gone.

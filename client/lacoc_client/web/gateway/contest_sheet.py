@@ -1,18 +1,18 @@
-"""The sheet of a contest, which its office writes again and again: the parts that clients read."""
+"""The parts that clients read of a contest's sheet; the office writes the sheet again and again."""
 
 from pathlib import Path
 
 import msgspec
 
 NAME = "contest.json"
-"""Name of the file."""
+"""Name of the sheet's file."""
 
 
 class SheetGame(msgspec.Struct, frozen=True):
-    """A game that counts, or a void one."""
+    """A game of a match that was played, also a void one."""
 
     record: str = ""
-    """File name of its record; "": it has none."""
+    """File name of the game's record; "": it has no record."""
     outcome: str = ""
 
 
@@ -29,7 +29,7 @@ class SheetStage(msgspec.Struct, frozen=True):
 
 
 class SheetDay(msgspec.Struct, frozen=True):
-    """Whether games are called now."""
+    """Whether games are called now, or the contest is paused."""
 
     paused: bool = False
     until_ms: int = 0
@@ -37,7 +37,7 @@ class SheetDay(msgspec.Struct, frozen=True):
 
 
 class SheetLine(msgspec.Struct, frozen=True):
-    """The organiser's line to all."""
+    """A line of text from the organiser to everybody."""
 
     text: str = ""
 
@@ -51,7 +51,7 @@ class PublishedSheet(msgspec.Struct, frozen=True):
 
     @property
     def games(self) -> list[SheetGame]:
-        """All games, in the sheet's order."""
+        """All games of all stages, in the order of the sheet."""
         return [game for stage in self.stages for match in stage.matches for game in match.games]
 
 
@@ -60,7 +60,7 @@ def read(path: Path) -> PublishedSheet:
 
     Raises:
         OSError: if the file can't be read.
-        ValueError: if it is no sheet.
+        ValueError: if it is not a sheet.
     """
     return msgspec.json.decode(path.read_bytes(), type=PublishedSheet)
 
@@ -77,7 +77,7 @@ class NewestSheet:
         self._read: tuple[int, PublishedSheet] = (0, PublishedSheet())
 
     def take(self) -> PublishedSheet | None:
-        """Return the newest sheet; None: there is none, or it can't be read now."""
+        """Return the newest sheet; None: there is no sheet, or it can't be read now."""
         try:
             version = self._path.stat().st_mtime_ns
             if self._read[0] != version:

@@ -1,4 +1,4 @@
-"""The courts of a gateway, and how many pages it lets in."""
+"""The courts of a gateway, and the limits on how many pages may come."""
 
 import asyncio
 import hmac
@@ -23,11 +23,14 @@ if TYPE_CHECKING:
 _THREADS = 16
 _FILES_S = 0.5
 _STRANGERS = 4
-"""Threads for unproven tokens. Decisions and fetches use others, so they never wait for these."""
+"""Number of threads that show courts tokens that no court has accepted yet. Decisions and other
+requests run on other threads, so they never wait for these."""
 
 
 class Courts:
-    """The feed and the referees of each court of a gateway; they are made when first needed.
+    """The feed and the referees of each court of a gateway.
+
+    Both are made when they are first needed.
 
     Args:
         home: the gateway's settings.
@@ -36,14 +39,13 @@ class Courts:
     def __init__(self, home: Home) -> None:
         self.home = home
         self.threads = Threads(_THREADS)
-        """Threads that ask courts."""
+        """Threads for requests to courts."""
         self.strangers = Threads(_STRANGERS)
-        """Threads that try tokens that no court has accepted yet."""
+        """Threads that show courts tokens that no court has accepted yet."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
         self._programme: Programme | None = None
         self.claiming: set[Viewer] = set()
-        """Pages that were let in only because they have a token, which no court has accepted yet.
-        """
+        """Pages that were let in only because they have a token that no court has accepted yet."""
         self.pages: set[Viewer] = set()
         """All pages that have named a court, or follow the director."""
         self.notice = Notice(home.sheet)
@@ -51,9 +53,11 @@ class Courts:
         self._accepted: set[bytes] = set()
         """Digests of the tokens that a court has accepted."""
         self.sent_away = 0
-        """Number of pages that found no place; those that only watch go on in pieces."""
+        """Number of pages that were refused for lack of room; pages that only watch can go on in
+        pieces."""
         self.pieces_asked = 0
-        """Number of requests for pieces that came here: caches on the way answer the others."""
+        """Number of requests for pieces that reached this gateway; caches on the way answered the
+        others."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
         """Return the started feed and the referees of a court; without a name, of the first court.
@@ -73,7 +77,10 @@ class Courts:
 
     @property
     def programme(self) -> "Programme":
-        """What the director puts on air; it begins with the first page that follows it."""
+        """The two pictures of the director.
+
+        They begin with the first page that follows the director.
+        """
         if self._programme is None:
             from lacoc_client.web.director.programme import Programme  # no court needs it
 
@@ -86,16 +93,22 @@ class Courts:
 
     @property
     def feeds(self) -> list[CourtFeed]:
-        """The feeds of all courts that were asked for; may be read from any thread."""
+        """The feeds of all courts that were needed so far; may be read from any thread."""
         return [feed for feed, _ in list(self._feeds.values())]
 
     def audiences(self, feed: CourtFeed) -> list[Audience]:
-        """Return all pages to which a court is shown; any thread may call it."""
+        """Return the groups of pages that see a court: at once, and late through the director.
+
+        Any thread may call it.
+        """
         followers = None if self._programme is None else self._programme.audience(feed.court)
         return [feed.audience] if followers is None else [feed.audience, followers]
 
     def over(self) -> list[str]:
-        """List the matches that are over but still open at their courts; any thread may call it."""
+        """List the ids of matches that are over but still at their courts.
+
+        Any thread may call it.
+        """
         pictures = [feed.picture for feed in self.feeds]
         ended = (Phase.OFFICIAL, Phase.VOID)
         return [picture.view.match_id for picture in pictures if picture.phase in ended]
@@ -111,12 +124,13 @@ class Courts:
     def threads_for(self, token: str) -> Threads:
         """Return the threads that show a token to a court.
 
-        Whoever comes back does not wait behind people who try tokens.
+        So somebody with an accepted token, who comes back, does not wait behind people who try
+        tokens.
         """
         return self.threads if self.has_accepted(token) else self.strangers
 
     def owns(self, key: str | None) -> bool:
-        """Return whether a page key is the one of this gateway."""
+        """Return whether a page key is this gateway's own."""
         return key is not None and hmac.compare_digest(
             key.encode("utf-8", "surrogatepass"), self.home.key.encode()
         )
@@ -129,8 +143,8 @@ class Courts:
         """Say why there is no room for a page; None if there is room.
 
         Pages whose token a court has accepted have a limit of their own. So no crowd of spectators
-        can take their places. A page with another token has a place beside the spectators too,
-        until it has shown its token to a court.
+        can take their places. A page whose token no court has accepted yet may come even if all
+        places of spectators are taken; it must then show its token to a court soon.
 
         Args:
             viewer: the page.
@@ -160,7 +174,7 @@ class Courts:
         return others + (self._programme.others(can_act, but) if self._programme else 0)
 
     def dismiss(self, viewer: Viewer) -> None:
-        """Send a viewer nothing any more."""
+        """Send a page nothing any more."""
         self.pages.discard(viewer)
         for feed in self.feeds:
             feed.audience.remove(viewer)
@@ -168,9 +182,10 @@ class Courts:
             self._programme.remove(viewer)
 
     async def watch_files(self) -> None:
-        """Watch the files on this machine; tell the pages what has changed.
+        """Watch the files on this machine, and tell the pages what has changed.
 
-        Own files concern the pages of their owner; a contest's sheet has a line to all.
+        Changes of a person's own files go to that person's pages. A new line in the contest's sheet
+        goes to all pages.
         """
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None or self.home.sheet is not None:

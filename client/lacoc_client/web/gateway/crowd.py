@@ -1,4 +1,4 @@
-"""How many people watch, and what they cheer: counted, never attributed."""
+"""Counts how many people watch and what they cheer, without names."""
 
 import asyncio
 from collections import Counter, deque
@@ -9,19 +9,21 @@ from lacoc_client.web.gateway.courts import Courts
 from lacoc_client.web.gateway.wire import MessageKind
 
 SYMBOLS = 4
-"""Number of symbols that people can cheer with; the page draws them."""
+"""Number of symbols for cheers; the page draws the symbols."""
 CHEERS_HZ = 1.0
-"""Cheers of a page a second."""
+"""How many cheers of a page count in a second."""
 LOOKS_S = 10
-"""A page in pieces says that it is here each time this has passed, or with a chance [s]."""
+"""A page that watches in pieces reports every so many seconds that it is there; of a very large
+crowd only a share of the pages does."""
 HEARD_MOST = 200
-"""Such messages in `LOOKS_S` that are wanted: of a larger crowd only a share speaks."""
+"""How many such reports are wanted in `LOOKS_S`: in a larger crowd only a share of the pages
+reports."""
 _SAYS_S = 1.0
 _SAYS_AGAIN = 5
 
 
 class Crowd:
-    """The people who watch; used from the event loop only.
+    """Counts the people who watch; used from the event loop only.
 
     Args:
         courts: the courts of the gateway.
@@ -32,21 +34,23 @@ class Crowd:
         self._cheers: dict[Audience, Counter[int]] = {}
         self._told: dict[Audience, bytes] = {}
         self._heard: deque[float] = deque([0.0] * LOOKS_S, LOOKS_S)
-        """By second, how many pages in pieces the messages stand for."""
+        """For each of the last seconds, how many pages in pieces its reports stand for."""
         self.share = 1.0
-        """The share of the pages in pieces that is asked to speak."""
+        """The share of the pages in pieces that is asked to report, 0 to 1."""
 
     def cheer(self, audience: Audience, symbol: int, count: float = 1) -> None:
-        """Count a cheer of somebody who watches a court."""
+        """Count a cheer of somebody who watches a court; do nothing if cheers are switched off."""
         if self._courts.home.cheers and 0 <= symbol < SYMBOLS:
             self._cheers.setdefault(audience, Counter())[symbol] += round(count)
 
     def hear(self, audience: Audience, cheers: list[int]) -> None:
-        """Count a page in pieces; it stands for all that were not asked to speak.
+        """Count the report of a page in pieces.
+
+        It stands also for pages that were not asked to report.
 
         Args:
             audience: the pages that watch the same court.
-            cheers: how often it cheered since it spoke last, by symbol.
+            cheers: for each symbol, how often the page cheered since its last report.
         """
         self._heard[-1] += 1 / self.share
         for symbol, count in enumerate(cheers):
@@ -54,11 +58,14 @@ class Crowd:
                 self.cheer(audience, symbol, min(count, CHEERS_HZ * LOOKS_S) / self.share)
 
     def watching(self) -> int:
-        """Return how many pages watch, as far as it is known."""
+        """Return how many pages watch; those in pieces are estimated from their reports."""
         return self._courts.watching() + round(sum(self._heard))
 
     async def tell(self) -> None:
-        """Tell all pages each second; ends only when it is cancelled."""
+        """Tell all pages every second how many watch and what was cheered.
+
+        Runs until it is cancelled.
+        """
         seconds = 0
         while True:
             await asyncio.sleep(_SAYS_S)
@@ -75,7 +82,7 @@ class Crowd:
         Args:
             audience: the pages.
             watching: how many watch the event.
-            again: whether to tell it also if nothing has changed.
+            again: whether to send the message even if nothing has changed.
         """
         cheers = self._cheers.get(audience, Counter[int]())
         body = {"watching": watching, "cheers": [cheers[one] for one in range(SYMBOLS)]}
@@ -85,7 +92,7 @@ class Crowd:
             audience.tell(message)
 
     def pass_second(self) -> None:
-        """Begin a new second."""
+        """End this second: forget its cheers, and compute the share of pages that should report."""
         self._cheers.clear()
         self.share = min(1.0, HEARD_MOST / max(1.0, sum(self._heard)))
         self._heard.append(0.0)

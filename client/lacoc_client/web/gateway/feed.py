@@ -30,14 +30,14 @@ _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
 _TRIP_S = 1.0
 _JOINED_S = 3.0
-"""Longest wait for a court that is not connected yet."""
+"""Longest wait of `joined` for a court that is not connected yet [s]."""
 """Time between two measurements of the way to the court, however many pages want to know."""
 
 
 class CourtFeed:
     """A court as its pages see it; used from the event loop only.
 
-    It may exist before its court does, and survives any number of the court's restarts.
+    It may be started before the court, and goes on after each restart of the court.
 
     Args:
         access: the way to the court, as a spectator.
@@ -48,23 +48,24 @@ class CourtFeed:
         self.access = access
         self.court = court = access.court
         self.session: Session | None = None
-        """The connection; None until the first one."""
+        """The connection to the court; None until the first one is open."""
         self._keys = KeySpace(court)
         self._threads = threads
         self.audience = Audience()
         """The pages that watch."""
         self.picture = CourtPicture()
-        """The newest state of the court, as its pages see it."""
+        """The newest state of the court, as the bytes for pages."""
         self._say = log.get(court=court)
         self._frame_s = time.monotonic()
         self._connected = False
-        """Whether the court sends frames in this gateway's version; only then pages get them."""
+        """Whether the court sends frames in this gateway's version of the protocol; only then pages
+        get them."""
         self._why: Phrase | None = None
-        """Why the court sends no frames."""
+        """Why the court sends no frames; None: it does, or the reason is not known."""
         self._logs_asked = 0
-        """Number of requests for the list of events whose answer is under way."""
+        """Number of requests for the list of events that have no answer yet."""
         self._held_events: list[bytes] = []
-        """The events that came meanwhile."""
+        """The events that came while a list of events was requested."""
         self._restoring: asyncio.Task[None] | None = None
         self._explaining: asyncio.Task[None] | None = None
         self._explained_s = 0.0
@@ -79,7 +80,7 @@ class CourtFeed:
             self._task = asyncio.get_running_loop().create_task(self._run())
 
     async def stop(self) -> None:
-        """Close the connection."""
+        """Stop listening, and close the connection."""
         started = (self._task, self._restoring, self._explaining, self._measuring)
         tasks = [task for task in started if task]
         for task in tasks:
@@ -90,14 +91,14 @@ class CourtFeed:
 
     @property
     def connected(self) -> bool:
-        """True if the court sends frames."""
+        """True while the court sends frames that pages can show."""
         return self._connected
 
     async def joined(self) -> Session:
-        """Wait a moment until the court is connected; return the connection to it.
+        """Wait a moment until the court is connected, and return the connection.
 
         Raises:
-            UserError: if it is not connected by then.
+            UserError: if the court is not connected by then.
         """
         end_s = time.monotonic() + _JOINED_S
         while not self._connected and time.monotonic() < end_s:
@@ -107,9 +108,9 @@ class CourtFeed:
         return self.session
 
     def trip_ms(self) -> float | None:
-        """Return how long the court's newest answer took [ms], and ask it again for the next time.
+        """Return how long the court's newest answer took [ms], and start the next measurement.
 
-        None: nothing was asked yet, or the court does not answer.
+        None: nothing was measured yet, or the court does not answer.
         """
         now_s = time.monotonic()
         idle = self._measuring is None or self._measuring.done()
@@ -132,13 +133,13 @@ class CourtFeed:
         self._say.info(text, kind=kind, match_id=self.picture.view.match_id, **particulars)
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page watch; send it everything that is known."""
+        """Let a page watch the court, and send it everything that is known."""
         for framed in (self._link(), *self._all()):
             viewer.send(framed)
         self.audience.add(viewer)
 
     def tap(self, listener: Listener) -> None:
-        """Let a listener have everything that pages get; send it everything that is known."""
+        """Let a listener receive everything that pages get, beginning with all that is known."""
         for framed in (self._link(), *self._all()):
             listener.send(framed)
         self.audience.tap(listener)
@@ -196,7 +197,7 @@ class CourtFeed:
         )
 
     def _explain(self, now_s: float) -> None:
-        """Start a request for the reason of the court's silence; the request takes a while."""
+        """Start to find out why the court is silent; the reason comes later."""
         idle = self._explaining is None or self._explaining.done()
         if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
             return
@@ -309,7 +310,7 @@ class CourtFeed:
             self._catch_up()
 
     def _look_at_version(self, before: int | None) -> None:
-        """Hide the court if its newest sheet has another version of the protocol than ours.
+        """Hide the court if its newest sheet shows another version of the protocol than ours.
 
         Args:
             before: the other version that was known before this sheet; None: none was known. If it
@@ -331,14 +332,17 @@ class CourtFeed:
 
     @property
     def _wrong_version(self) -> Phrase | None:
-        """Why the court is not shown: it has another version of the protocol; None: it has ours."""
+        """Why the court can't be shown: it has another version of the protocol.
+
+        None: it has ours.
+        """
         if self._other_version is None:
             return None
         version = self._other_version or None
         return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
 
     def _catch_up(self) -> None:
-        """Fetch what is new, was sent while the connection was down, or was lost on a slow link."""
+        """Start to fetch events, sheet and scene that did not arrive."""
         if self._restoring is None or self._restoring.done():
             self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
@@ -357,7 +361,7 @@ class CourtFeed:
                 return  # the next frame or health asks again
 
     async def _fetch_log(self) -> None:
-        """Fetch the list of events, then take in those that came meanwhile: the list lacks them."""
+        """Fetch the list of events, then add events that came meanwhile: the list lacks them."""
         self._logs_asked += 1
         try:
             self._take_log(await self._ask(self._keys.event))

@@ -23,10 +23,10 @@ class PageFile(NamedTuple):
 
     data: bytes
     packed: bytes | None
-    """The data compressed with gzip; None: it is short, or no text."""
+    """The data compressed with gzip; None: the data is short, or not a text."""
     media_type: str
     hash: str
-    """Changes with the data."""
+    """A hash of the data, by which a browser sees whether its copy is the newest."""
 
 
 class PageFiles:
@@ -35,7 +35,7 @@ class PageFiles:
     def __init__(self, folder: Path = PAGES) -> None:
         self._folder = folder.resolve()
         self._files: dict[Path, tuple[int, PageFile]] = {}
-        """By the real path: the same file can be asked for with many spellings."""
+        """Files by their real path, because one file can be asked for with many spellings."""
 
     @property
     def built(self) -> bool:
@@ -65,7 +65,7 @@ def _read(path: Path) -> PageFile:
 
 
 def page_file(data: bytes, kind: str) -> PageFile:
-    """Make what is served of a file's bytes and its media type."""
+    """Make a served file from its bytes and its media type."""
     packed = None
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)

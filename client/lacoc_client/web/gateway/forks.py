@@ -1,7 +1,8 @@
-"""Forks that pages ask for: `lacoc replay fork` goes on with a recording of this gateway.
+"""Plays forks that pages ask for: `lacoc replay fork` goes on with a recording of this gateway.
 
-The command is a process of its own, because a gateway has no physics. The fork's record lies beside
-the gateway's copies, so it is listed and shown like any other, and goes when the gateway ends.
+The command runs in a process of its own, because a gateway has no physics. The record of a fork
+lies beside the gateway's copies, so it is listed and shown like any other recording. It is deleted
+when the gateway ends.
 """
 
 import asyncio
@@ -26,30 +27,31 @@ from lacoc_shared.words.render import Language
 
 _MOST_WAITING = 4
 _LIMIT_S = 120.0
-"""Longest time that a fork may take [s]; one of three minutes takes some 10 s."""
+"""Longest time that the command may take [s]; a fork of three minutes takes some 10 s."""
 
 _Name = Annotated[str, msgspec.Meta(max_length=64, pattern="^[A-Za-z0-9][A-Za-z0-9_-]*$")]
 _Player = Annotated[str, msgspec.Meta(max_length=64)]
 
 
 class ForkAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """How a page wants to go on with a recording."""
+    """A page's request for a fork of a recording."""
 
     beat: Annotated[int, msgspec.Meta(ge=1, le=10**8)]
     """First beat that may differ from the recording."""
     take_back: Annotated[int, msgspec.Meta(ge=1, le=10**8)] | None = None
-    """Number of an event that is taken back; None: none."""
+    """Number of an event of the recording that is taken back; None: no event."""
     restart: tuple[_Name, ...] = ()
     """Ids of the seats whose robots are put back at their start place."""
     players: tuple[_Player, ...] = ()
-    """For each seat a bot, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
+    """For each seat the name of a bot, or `brains.RECORDED`; empty: all seats keep their recorded
+    keys."""
 
 
 class ForkMade(msgspec.Struct, frozen=True):
     """A fork that was played."""
 
     name: str
-    """Name of its recording at this gateway."""
+    """Name of the fork's recording at this gateway."""
 
 
 class _Printed(msgspec.Struct):
@@ -95,7 +97,7 @@ class Forks:
             self._waiting -= 1
 
     def close(self) -> None:
-        """End the command, if one runs."""
+        """End the command, if one is running."""
         if self._process is not None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
@@ -128,7 +130,7 @@ class Forks:
 
 
 def bots(record: Path) -> list[str]:
-    """Return the names of the bots that can go on with a recording.
+    """Return the names of the bots that can steer robots in a fork of a recording.
 
     Raises:
         UserError: if the recording can't be read, or its game is not installed here.
@@ -139,10 +141,10 @@ def bots(record: Path) -> list[str]:
 
 
 def _check_players(record: Path, players: tuple[str, ...]) -> None:
-    """Check that all players are bots by name: the name of a file would let its code run.
+    """Check that each player is the name of a known bot: a file's name would let its code run.
 
     Raises:
-        UserError: if one is not.
+        UserError: if a player is no known bot.
     """
     if not players:
         return
@@ -163,7 +165,10 @@ def _words(record: Path, asked: ForkAsk, folder: Path) -> list[str]:
 
 
 async def _output(process: Process) -> tuple[bytes, bytes]:
-    """Read all that a process prints, until it ends; its standard input stays open meanwhile."""
+    """Read everything that a process prints, until it ends.
+
+    Keep its standard input open meanwhile.
+    """
     assert process.stdout is not None
     assert process.stderr is not None
     out, errors = await asyncio.gather(process.stdout.read(), process.stderr.read())

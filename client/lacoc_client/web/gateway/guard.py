@@ -1,9 +1,9 @@
-"""Decides who may talk to a gateway: browsers that opened its page, and each machine its share.
+"""Decides which connections a gateway accepts: of its own pages, and not too many of a machine.
 
-Any web site can make a browser send requests to 127.0.0.1. So the Host must be a name of this
-machine, the name of its public address, or an IP address: another site's name could be made to
-point here, an IP address can't. And a page of another origin gets no WebSocket. A proxy may replace
-the Host by the gateway's own address; then the origin is still that of the public address.
+Any web site can make a browser send requests to 127.0.0.1. So the Host of a request must be a name
+of this machine, the name of its public address, or an IP address. (Another site's name could be
+made to point here; an IP address can't.) A page of another origin gets no WebSocket. A proxy may
+replace the Host by the gateway's own address; then the origin is still that of the public address.
 """
 
 import re
@@ -26,21 +26,21 @@ _POLICY = (
 )
 _HOST = re.compile(r"(\[(?P<number>[0-9A-Fa-f:.]+)\]|(?P<name>[^][:]+))(:[0-9]*)?")
 SOCKETS_MOST = 200
-"""Most WebSockets of one machine: half of the pages that may watch. A school of 35 behind one
-address has five pages for each; and no machine alone can take all places."""
+"""Most WebSockets of one machine: half of the pages that may watch. So a school of 35 behind one
+address has five pages for each person, and no machine alone can take all places."""
 _EMBEDDABLE = ("/overlay",)
-"""Pages that other sites may embed: they take no input."""
+"""Pages that other sites may embed, because one can't enter anything on them."""
 
 
 def machine_names() -> frozenset[str]:
-    """Return the names by which others know this machine."""
+    """Return the host names by which others may reach this machine."""
     name = socket.gethostname().lower()
     first = name.partition(".")[0]
     return frozenset({"localhost", name, first, f"{first}.local"}) - {""}
 
 
 class Guard:
-    """Checks each connection before the application gets it, and takes the path of the pages away.
+    """Checks each connection before the application gets it, and removes the public path prefix.
 
     Args:
         app: the application; its paths begin at "/".
@@ -55,7 +55,7 @@ class Guard:
         """WebSockets that are open, by the address of their machine."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Let a connection in, or refuse it."""
+        """Pass a connection on to the application, or refuse it."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
@@ -78,7 +78,10 @@ class Guard:
             self._held += Counter()  # forgets those with none
 
     def _instead(self, scope: Scope) -> ASGIApp | None:
-        """Return what answers in place of the application, if anything does."""
+        """Return the answer that is sent in place of the application's.
+
+        None: the application answers.
+        """
         if (refusal := self._why_not(scope)) is not None:
             return answer_browser(scope, refusal, 403)
         below = self._public.path
@@ -114,7 +117,10 @@ class Guard:
 
 
 def machine_of(scope: Scope) -> str:
-    """Return the address of the machine that asks, as far as proxies are believed; else ""."""
+    """Return the address of the machine that asks.
+
+    Behind a proxy that is believed, the proxy says it. "" if it is not known.
+    """
     client = scope.get("client")
     return client[0] if client else ""
 
@@ -125,7 +131,7 @@ def answer_browser(scope: Scope, said: Phrase, status: int) -> PlainTextResponse
 
 
 def language_of(scope: Scope) -> Language:
-    """Return the language that a browser wants most, of those that LACOC speaks."""
+    """Return the language that a browser prefers, of those in which LACOC has texts."""
     wanted = Headers(scope=scope).get("accept-language", "").lower()
     # Browsers list the preferred language first.
     found = ((wanted.find(language), language) for language in LANGUAGES if language in wanted)
@@ -148,6 +154,6 @@ def _all(scope: Scope, name: bytes) -> list[str]:
 
 
 def name_of(host: str) -> str:
-    """Return the host without its port; "" if this is no host."""
+    """Return a host without its port; "" if the text is no host."""
     match = _HOST.fullmatch(host)
     return (match["number"] or match["name"]).lower().rstrip(".") if match else ""

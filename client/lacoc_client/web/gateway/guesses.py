@@ -5,15 +5,19 @@ from collections import OrderedDict
 from lacoc_shared.network.allowance import Allowance
 
 _GUESSES_HZ, _GUESSES_BURST = 0.5, 20
-"""Wrong codes of a machine that are answered at once."""
+"""How many wrong codes of a machine are answered without a wait: so many a second, and so many at
+once."""
 _LATER_S = 1.0
-"""How long a page waits for the answer to a further wrong code. Even with 400 pages at a time a
-machine then tries 400 a second. The right code never waits: a class may share one address."""
+"""How long a page waits for the answer to a wrong code beyond these [s]. So a machine tries at most
+400 codes a second, even with 400 pages at a time. The right code never waits: a class may share one
+address."""
 _MOST_SENDERS = 1000
 
 
 class Allowances:
-    """An `Allowance` for each sender; of very many senders, those heard longest ago begin again.
+    """Limits requests with one `Allowance` for each sender.
+
+    It keeps the allowances of the newest senders only: a sender that was forgotten begins anew.
 
     Args:
         rate_hz: how many requests of a sender pass in a second, in the long run.
@@ -45,7 +49,7 @@ class Guesses:
         self._machines = Allowances(_GUESSES_HZ, _GUESSES_BURST)
 
     def wait_s(self, machine: str, now_s: float) -> float:
-        """Count a wrong code; return how long its answer must wait [s].
+        """Count a wrong code, and return how long its answer must wait [s].
 
         Args:
             machine: address of the machine that sent the code.

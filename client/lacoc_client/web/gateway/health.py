@@ -1,18 +1,19 @@
-"""What a gateway says of itself, and how a request came to it."""
+"""The answer of a gateway to whoever checks that it is well."""
 
 import msgspec
 
 
 class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
-    """What a gateway says of itself to whoever watches over it."""
+    """The state of a gateway, for programs that watch it, and how the request came to it."""
 
     version: str
     """Version of LACOC."""
     contest: str
     """Name of the contest; "" if there is none."""
     host: str
-    """The request's `Host`, which a proxy may have replaced."""
+    """`Host` of the request as it arrived here; a proxy may have replaced it."""
     unnamed_proxy: bool
-    """Whether a proxy says who asks and is not believed: all then seem to be one machine."""
+    """Whether a proxy told the gateway the machine that asks, but is not believed. Then all pages
+    seem to come from one machine."""
     pages: tuple[str, ...] = ()
-    """Paths of the pages."""
+    """Paths at which the gateway has pages."""

@@ -1,4 +1,4 @@
-"""The settings of a gateway: its kind, its courts, and what its pages have filled in."""
+"""The settings of a gateway: its kind, its courts, and what is filled in on its pages."""
 
 import secrets
 from collections.abc import Mapping
@@ -15,11 +15,11 @@ Kind = Literal["venue", "player", "practice"]
 VIEWERS_MOST = 400
 """Most pages that only watch: 25 frames a second for 400 pages need 3 MB/s."""
 ACTING_MOST = 250
-"""Most pages whose token a court has accepted, in addition: several for each seat and referee of a
-large contest, and more than one machine may have.
-"""
+"""Most pages whose token a court has accepted; these come in addition. The limit allows several
+pages for each seat and referee of a large contest, and is above the limit of one machine."""
 CLAIMING_MOST = 100
-"""Most pages, in addition, with a token that no court has accepted yet: a school, and more."""
+"""Most pages with a token that no court has accepted yet; these come in addition. Enough for a
+school."""
 
 
 def new_key() -> str:
@@ -29,13 +29,13 @@ def new_key() -> str:
 
 @dataclass(frozen=True)
 class Prefill:
-    """What one person gave on the command line, so that the page need not ask for it."""
+    """What a person gave on the command line, so that the page need not ask for it."""
 
     seat: str = ""
     token: str = ""
     name: str = ""
     files: OwnFiles | None = None
-    """Files on this machine; the page may send others."""
+    """Gait and robot files on this machine; the page may send others instead."""
 
 
 @dataclass(frozen=True)
@@ -51,27 +51,29 @@ class Home:
     recordings: Path | None = None
     """Folder of the recordings that pages may fetch."""
     sheet: Path | None = None
-    """The newest sheet of the contest, which its office writes."""
+    """Path of the contest's sheet, which its office writes again and again; None: no contest."""
     keeps_back: bool = False
     """Whether pages may fetch only the recordings that the sheet names."""
     cheers: bool = True
     """Whether people who watch may cheer."""
     desk: bool = False
-    """Whether there are the pages of a contest's desk: /enter and /office."""
+    """Whether the gateway has the pages /enter and /office, whose requests go to a contest's
+    desk."""
     viewers_most: int = VIEWERS_MOST
     exporter: Exporter | None = None
     """Serves the gateway's metrics."""
     told: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """For each court the addresses that commands are told; none: it plays with pages only."""
+    """For each court the addresses that commands are given; none: the court can be reached through
+    pages only."""
     authority: str = ""
-    """Certificate (PEM) of the event's own authority; "": it has none."""
+    """Certificate (PEM) of the event's own authority; "": it has no authority of its own."""
     key: str = field(default_factory=new_key)
-    """The page key: a page with it belongs to the person who started the gateway."""
+    """The page key: a page that shows it counts as one of the person who started the gateway."""
 
 
 def player_home(
     courts: Mapping[str, Access], prefill: Prefill, kind: Kind, recordings: Path | None
 ) -> Home:
-    """Return the settings of a gateway for one person, whose way leads to these courts."""
+    """Return the settings of a gateway for one person who may reach these courts."""
     watching = {name: access.watching() for name, access in courts.items()}
     return Home(watching, kind, "", prefill, recordings)

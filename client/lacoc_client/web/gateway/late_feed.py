@@ -11,7 +11,7 @@ from lacoc_client.web.gateway.viewer import Viewer
 
 
 class _SentBy(Enum):
-    """The method of `Listener` by which a message came."""
+    """The method of `Listener` with which a message came and is to be passed on."""
 
     SENT = auto()
     IF_FAST = auto()
@@ -22,21 +22,21 @@ class LateFeed:
     """Passes on what a court's feed sends, each message later by a fixed time.
 
     Args:
-        feed: the court.
+        feed: the feed of the court.
         behind_s: how much later messages are passed on [s].
     """
 
     def __init__(self, feed: CourtFeed, behind_s: float) -> None:
         self.court = feed.court
         self.audience = Audience()
-        """The pages that watch it late."""
+        """The pages that see the court late."""
         self._behind_s = behind_s
         self._waiting: deque[tuple[float, _SentBy, bytes]] = deque()
         self._backlog = Backlog()
         feed.tap(self)
 
     def send(self, framed: bytes) -> None:
-        """Hold a message back."""
+        """Hold back a message that must arrive."""
         self._waiting.append((time.monotonic(), _SentBy.SENT, framed))
 
     def send_if_fast(self, framed: bytes) -> None:
@@ -48,13 +48,13 @@ class LateFeed:
         self._waiting.append((now_s, _SentBy.OFFERED, framed))
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page watch; send it everything that was known `behind_s` ago."""
+        """Let a page watch; send it everything that was known about the court `behind_s` ago."""
         for framed in self._backlog.all():
             viewer.send(framed)
         self.audience.add(viewer)
 
     def play(self, now_s: float) -> None:
-        """Pass on what has waited long enough.
+        """Pass on the messages that have waited for `behind_s`.
 
         Args:
             now_s: the time of `time.monotonic` [s].

@@ -1,4 +1,4 @@
-"""A gateway's numbers for Prometheus: who watches, and the frames they get."""
+"""A gateway's numbers for Prometheus: how many people watch, and how many frames they get."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from lacoc_client.web.gateway.courts import Courts
 
 
 class GatewayMetrics(Collector):
-    """The metrics of a gateway; a scrape reads plain numbers that the event loop writes.
+    """The metrics of a gateway. A scrape only reads numbers that the event loop has written.
 
     Args:
         courts: the courts of the gateway.

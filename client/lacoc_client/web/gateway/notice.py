@@ -1,4 +1,4 @@
-"""What the organiser of a contest tells all pages: a line, and whether games are called now."""
+"""The organiser's message to all pages: a line of text, and whether games are called now."""
 
 from pathlib import Path
 
@@ -7,10 +7,10 @@ from lacoc_client.web.gateway.wire import MessageKind, map_message
 
 
 class Notice:
-    """What the newest sheet of a contest tells all; used from one thread at a time.
+    """The message to all pages, from the newest sheet of a contest; used from one thread at a time.
 
     Args:
-        sheet: the sheet, which need not exist yet; None: there is no contest.
+        sheet: the sheet's file, which need not exist yet; None: there is no contest.
     """
 
     def __init__(self, sheet: Path | None) -> None:
@@ -18,7 +18,7 @@ class Notice:
         self._told: tuple[SheetDay, SheetLine | None] = (SheetDay(), None)
 
     def look(self) -> bool:
-        """Read the sheet if it is new; return whether it tells something else than before."""
+        """Read the sheet if it is new; return whether the message has changed."""
         sheet = None if self._sheet is None else self._sheet.take()
         if sheet is None:
             return False
@@ -27,7 +27,7 @@ class Notice:
 
     @property
     def message(self) -> bytes:
-        """The message to a page."""
+        """The message, as it is sent to a page."""
         day, line = self._told
         body = {
             "text": line.text if line is not None else "",

@@ -1,4 +1,4 @@
-"""One page's connection: the requests that it may make, and who answers them."""
+"""The connection of one page: answers each request that the page may make."""
 
 import asyncio
 import time
@@ -36,13 +36,14 @@ _ASKS_HZ, _ASKS_BURST = 100.0, 200
 _TOKENS_HZ, _TOKENS_BURST = 1.0, 10
 _COURTS_HZ, _COURTS_BURST = 1.0, 5
 _CLAIM_S = 15.0
-"""Time in which a page that has a place only because of its token must show it to a court [s]."""
+"""A page that was let in only because of its token must show the token to a court within this time
+[s]."""
 _LOOKS_S = 10.0
-"""How long play goes on in the outlook that a referee sees [s]."""
+"""For how long play goes on in an outlook that a referee sees [s]."""
 
 
 class Page:
-    """One page's connection.
+    """The connection of one page, and its place in the feed that it watches.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
@@ -59,7 +60,8 @@ class Page:
         self._feed: CourtFeed | None = None
         self._referees: Referees | None = None
         self._follows: Programme | None = None
-        """What the director shows, if the page follows it; then it is at no court of its own."""
+        """The programme, if the page follows the director; then the page has no court of its
+        own."""
         self._answers = answers = Answers(self._viewer, self._log)
         self._seat = PageSeat(self._viewer, answers, self._home.prefill, self._log)
         self._tokens = Allowance(_TOKENS_HZ, _TOKENS_BURST)
@@ -67,7 +69,7 @@ class Page:
         self._greetings = Allowance(_COURTS_HZ, _COURTS_BURST)
         self._entering = asyncio.Lock()
         self._leaving: asyncio.TimerHandle | None = None
-        """Ends a claim that nothing came of."""
+        """Closes a page that was let in only because of its token and has not shown it in time."""
 
     async def serve(self) -> None:
         """Answer the page's requests until the page goes."""
@@ -167,7 +169,7 @@ class Page:
         return True
 
     def _cheer(self, symbol: int) -> None:
-        """Count a cheer; one that comes too soon is no error, and has no effect."""
+        """Count a cheer; a cheer that comes too soon is ignored without an error."""
         audience = self._feed.audience if self._feed is not None else None
         if self._follows is not None:
             audience = self._follows.seen_by(self._viewer)
@@ -179,7 +181,7 @@ class Page:
 
     @property
     def _may_act(self) -> bool:
-        """Whether the page may act, if a court accepts its token."""
+        """Whether the page may act as a player or referee, once a court has accepted its token."""
         return self._home.kind == "venue" or self._viewer.is_own
 
     def _acting(self) -> tuple[CourtFeed, Referees]:
@@ -193,7 +195,11 @@ class Page:
         self._seat.join(asked, feed.access, self._answers.from_thread(asked.id))
 
     async def _proven_join(self, asked: wire.JoinAsk, feed: CourtFeed) -> Any:
-        """Join with a token that no court has accepted yet: a seat of its own is dear."""
+        """Join with a token that no court has accepted yet; first ask the court about the token.
+
+        A join needs a thread and a connection of its own, so it comes only after the token is
+        accepted.
+        """
         await self._ask_where(asked.token or "", feed)
         joined = asyncio.get_running_loop().create_future()
         self._seat.join(asked, feed.access, partial(in_future, joined))
@@ -210,7 +216,10 @@ class Page:
         return found
 
     async def _ask_where(self, token: str, feed: CourtFeed) -> Whereabouts:
-        """Ask a court where a token plays: the court accepts it, or refuses it."""
+        """Ask a court where the team with a token plays.
+
+        The answer shows whether the token is valid.
+        """
         if not token:
             raise UserError(say("gateway.no-token"))
         session = await feed.joined()
@@ -221,7 +230,7 @@ class Page:
         return found
 
     def _accepted(self, token: str) -> None:
-        """Give the page a place among those that act.
+        """Note that a court accepted the page's token; give the page a place among those that act.
 
         Raises:
             UserError: if there is no room.
@@ -237,7 +246,7 @@ class Page:
         courts.claiming.discard(viewer)
 
     def _give_up(self) -> None:
-        """Close a page that came with a token only, and has not shown it to a court."""
+        """Close the page if it came in only for its token and has not shown it to a court."""
         if self._viewer in self._courts.claiming:
             self._courts.sent_away += 1
             asyncio.get_running_loop().create_task(self._websocket.close(TRY_LATER, "full"))
@@ -284,7 +293,7 @@ class Page:
         return await self._courts.threads.run(lambda: client.look_ahead(asked.decision, _LOOKS_S))
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log a line about this page; while the page is at no court, log nothing."""
+        """Log a line about this page; log nothing if the page has no court."""
         client, feed = self._websocket.client, self._feed
         if feed is not None:
             feed.log(text, kind, page=client and f"{client.host}:{client.port}", **particulars)

@@ -18,11 +18,12 @@ GARBAGE = 1008
 
 _FIRST_S = 10.0
 _COST_BYTES = 4096
-"""A message counts as one request for each so many bytes: large tables cost much time to check."""
+"""A message counts as one more request for each so many bytes, because checking a large table takes
+long."""
 
 
 class Numbered(Protocol):
-    """A request with a number, which its reply repeats."""
+    """A request with a number; the reply has the same number."""
 
     @property
     def id(self) -> int:
@@ -48,8 +49,8 @@ async def serve_requests(
         read: decodes a request; raises `wire.Unreadable`.
         answer: answers a request; returns True to go on, or False after it has closed the page. A
             `UserError` or `FileRefused` that it raises is sent to the page as a refusal.
-        most_hz: most requests a second in the long run.
-        burst: most requests at once.
+        most_hz: how many requests a second are read in the long run; a page that sends more waits.
+        burst: how many requests are read at once.
     """
     asks = Allowance(most_hz, burst)
     await websocket.accept()

@@ -21,12 +21,14 @@ from lacoc_shared.words import render, say
 
 
 class PageSeat:
-    """Joins a seat, steers it and reports its state to the page; used from the event loop only.
+    """Joins a seat for a page, steers it and tells the page its state.
+
+    Used from the event loop only.
 
     Args:
         viewer: the page.
         answers: answers the page's requests.
-        prefill: what the page need not send.
+        prefill: what was given on the command line; the page need not send it.
         log: logs a line about the page: a sentence, its kind and particulars.
     """
 
@@ -44,9 +46,10 @@ class PageSeat:
         self._thread: SeatThread | None = None
         self._joins = 0
         self.brings = True
-        """Whether a join brings files: an office has frozen those of its teams."""
+        """Whether a join must bring files; False for a contest's team, whose files the office has
+        already."""
         self._hold = ("", "")
-        """The seat and its hold, as last logged."""
+        """Seat and hold that were logged last."""
 
     def join(self, asked: wire.JoinAsk, watching: Access, joined: Answer) -> None:
         """Take a seat, in place of the page's earlier seat if it had one.
@@ -54,7 +57,7 @@ class PageSeat:
         Args:
             asked: the page's request.
             watching: the way to the court, as a spectator.
-            joined: receives the result, on another thread.
+            joined: called with the result of the join, on another thread.
 
         Raises:
             UserError: if there is no token.
@@ -102,7 +105,9 @@ class PageSeat:
                 do(lambda controller: _saw(controller, SeenFrame(number, beat)), answer)
 
     async def try_out(self, asked: wire.TryAsk, threads: Threads) -> TryOutReply:
-        """Ask the court how the seat's robot would walk alone, and leave the seat's thread free.
+        """Ask the court how the seat's robot would walk alone.
+
+        Wait on another thread than the seat's.
 
         Raises:
             UserError: if the page has no seat, or the court refuses or does not answer.
@@ -120,7 +125,10 @@ class PageSeat:
         return await threads.run(ask)
 
     def leave(self) -> None:
-        """Stop repeating the command when the page goes; the contestant keeps the seat."""
+        """Stop repeating the command, because the page has gone.
+
+        The team does not give up the seat.
+        """
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
@@ -133,7 +141,7 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """Return seat access, team name and files; the prefill has what the page left out."""
+        """Return seat access, team name and files; take from the prefill what the page left out."""
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill if self._viewer.is_own else None

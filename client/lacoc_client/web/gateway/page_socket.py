@@ -1,8 +1,8 @@
-"""uvicorn's connections, extended for hundreds of pages and for those who only hold connections.
+"""uvicorn's connections, extended for hundreds of pages and against clients that only block them.
 
-A message to a page is made once, as the bytes of its WebSocket frame, and written to all of them.
-Through ASGI, each of 300 pages would need a task switch 25 times a second. The socket knows whether
-a page keeps up, so that it gets no more than it can take.
+A message to all pages is made once, as the bytes of its WebSocket frame, and written to each page.
+Through ASGI, each of 300 pages would need a task switch 25 times a second. A socket also notices
+whether its page keeps up, so that a page gets no more than it can take.
 """
 
 import asyncio
@@ -19,9 +19,9 @@ from websockets.http11 import Request
 from lacoc_shared.network.public import is_loopback, is_proxy
 
 KEPT_BYTES = 1 << 20
-"""Most bytes that may wait for a page; a page with more is cut off: it has gone or is too slow."""
+"""Most bytes that may wait for a page. A page with more is closed: it has gone, or is too slow."""
 _UNSENT_BYTES = 4096
-"""Bytes that the system may hold back before a page counts as slow: a dozen frames."""
+"""A page counts as slow while the system holds back more bytes than these: a dozen frames."""
 _UNANSWERED_S = 1.0
 """Longest time to answer a ping. A page that takes longer gets no frames until it answers, so that
 buffers on the way, however large, never fill with old frames.
@@ -34,7 +34,7 @@ CONNECTIONS_MOST = 500
 
 
 class PageSocket(WebSocketsSansIOProtocol):
-    """A WebSocket that takes finished frames; found as `websocket.state.socket`."""
+    """A WebSocket to which finished frames are written; `websocket.state.socket` is this object."""
 
     heard_s = 0.0
     """Time when the page last sent anything, on the loop's clock."""
@@ -51,13 +51,13 @@ class PageSocket(WebSocketsSansIOProtocol):
             raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _UNSENT_BYTES)
 
     def handle_connect(self, event: Request) -> None:
-        """Begin the handshake."""
+        """Begin the WebSocket handshake."""
         super().handle_connect(event)
         if self.response.status_code == 101:
             self.scope["state"]["socket"] = self
 
     def data_received(self, data: bytes) -> None:
-        """Take in bytes; see `asyncio.Protocol`."""
+        """Receive bytes from the page; see `asyncio.Protocol`."""
         self.heard_s = self.loop.time()
         super().data_received(data)
 
@@ -86,7 +86,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         self.transport.write(framed)
 
     def watch_closely(self) -> None:
-        """Ping the page several times a second, because somebody steers a robot from it."""
+        """Ping the page several times a second, because somebody steers a robot on it."""
         if self.ping_interval != _WATCHED_PING_S:
             self.ping_interval = _WATCHED_PING_S
             self.stop_keepalive()
@@ -94,10 +94,11 @@ class PageSocket(WebSocketsSansIOProtocol):
 
 
 class PageRequests(H11Protocol):
-    """A connection of a browser; it is closed if it holds half a request for too long.
+    """An HTTP connection of a browser; it is closed if half a request stays on it for too long.
 
-    Else whoever opens connections and sends half a request on each could hold them all for ever. A
-    machine that holds very many gets no more, unless it is a proxy, which asks for others.
+    Otherwise somebody could open many connections, send half a request on each, and block them for
+    ever. A machine with very many connections gets no more, unless it is a proxy: it asks for other
+    machines.
     """
 
     _too_late: asyncio.TimerHandle | None = None
@@ -115,12 +116,12 @@ class PageRequests(H11Protocol):
         self._wait()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Give up a connection; see `asyncio.Protocol`."""
+        """Note that a connection has ended; see `asyncio.Protocol`."""
         self._wait_no_longer()
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
-        """Take in bytes; see `asyncio.Protocol`."""
+        """Receive bytes from the browser; see `asyncio.Protocol`."""
         super().data_received(data)
         own = self.transport.get_protocol() is self  # else it is a WebSocket's connection now
         if own and self.conn.their_state in (h11.IDLE, h11.SEND_BODY):

@@ -1,4 +1,4 @@
-"""The newest state of a court, as the bytes that its pages get."""
+"""The newest state of a court, kept as the bytes that are sent to its pages."""
 
 import msgspec
 
@@ -36,7 +36,7 @@ class SheetPart(msgspec.Struct):
 
 
 class FramePart(msgspec.Struct):
-    """How a match stands: what the newest frame says of it."""
+    """How a match stands, read from the newest frame."""
 
     match: int
     phase: Phase
@@ -45,7 +45,7 @@ class FramePart(msgspec.Struct):
 
 
 class _FrameHead(msgspec.Struct, array_like=True):
-    """The fields of a `Frame` up to its scene; only pages read the others."""
+    """The fields of a `Frame` up to its scene; the gateway does not read the fields behind it."""
 
     match: int
     beat: int
@@ -59,7 +59,7 @@ class _FrameHead(msgspec.Struct, array_like=True):
 
 
 class CourtPicture:
-    """A court as it is shown to a page that connects now.
+    """The state of a court, for a page that connects now.
 
     Each `take_...` returns the bytes for pages, or None if there is nothing new for them. It
     raises `BadMessage` if the court's bytes can't be decoded; then the picture does not change.
@@ -69,23 +69,23 @@ class CourtPicture:
         self.view: CourtView[bytes] = CourtView(
             lambda _, data: wire.message(MessageKind.EVENT, data)
         )
-        """What the court has sent, and what part of it is missing here."""
+        """The messages of the court, and which of them did not arrive here."""
         self.phase = 0
         """Phase in the newest frame."""
         self.frame: bytes | None = None
         """The newest frame."""
         self._newest: _FrameHead | None = None
         self._sheet: tuple[bytes, SheetPart] | None = None
-        """The newest sheet that `played` has read."""
+        """The newest sheet that `played` has read: its bytes and its parts."""
         self._health: bytes | None = None
 
     @property
     def log(self) -> tuple[bytes, ...]:
-        """All events."""
+        """All events of the match, as bytes for pages."""
         return tuple(self.view.log)
 
     def all_but_frame(self) -> tuple[bytes, ...]:
-        """Return what a page needs before it can show a frame."""
+        """Return everything that a page needs before it can show a frame."""
         view = self.view
         sheet = [] if view.sheet is None else [wire.message(MessageKind.SHEET, view.sheet)]
         scene = [] if view.scene is None else [_scene(view.scene)]
@@ -106,7 +106,10 @@ class CourtPicture:
         return FramePart(frame.match, phase, frame.clock_ticks, scores)
 
     def played(self) -> SheetPart | None:
-        """Read what is played; None if the newest frame's match has no sheet yet, or a bad one."""
+        """Read what is played.
+
+        None if the newest frame's match has no sheet yet, or an unreadable one.
+        """
         sheet, frame = self.view.sheet, self._newest
         if sheet is None or frame is None:
             return None
@@ -119,7 +122,7 @@ class CourtPicture:
         return played if played.match == frame.match else None  # else a newer one is on its way
 
     def take_frame(self, payload: bytes) -> bytes:
-        """Take a frame in; return the bytes for pages."""
+        """Note a frame of the court; return the bytes for pages."""
         frame = decode(payload, _FrameHead, MAX_BYTES)
         self.view.see_frame(frame.scene)
         self.phase = frame.phase
@@ -128,12 +131,12 @@ class CourtPicture:
         return framed
 
     def take_event(self, payload: bytes) -> bytes | None:
-        """Take an event in; return the bytes for pages, or None if it is not new."""
+        """Note an event of the court; return the bytes for pages, or None if it is not new."""
         is_new = self.view.add_event(decode(payload, Event, MAX_BYTES), payload)
         return wire.message(MessageKind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Take a scene in.
+        """Note a scene of the court.
 
         Returns:
             The bytes for pages; None if the scene is not new, or not the newest frame's scene.
@@ -141,7 +144,7 @@ class CourtPicture:
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Take a sheet in.
+        """Note a sheet of the court.
 
         Returns:
             The bytes for pages; None if the sheet is not new, or has another protocol version.
@@ -149,7 +152,7 @@ class CourtPicture:
         return wire.message(MessageKind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Take health in.
+        """Note the health of the court.
 
         Returns:
             The bytes for pages; None if the court has another version of the protocol.

@@ -1,7 +1,8 @@
 """Puts the pages into a published folder, so that any web server can show it.
 
-The addresses in the built pages are relative, so the folder can be at any path. A page's file says
-which page it is: a web server without our routes can't.
+The addresses in the built pages are relative, so the folder can be at any path. Each page has an
+HTML file of its own that says which page it is, because another web server does not have the
+gateway's routes.
 """
 
 from pathlib import Path
@@ -15,7 +16,7 @@ FILES = {"index.html": "contest", "replay.html": "replay"}
 
 
 def write_pages(folder: Path) -> None:
-    """Write the pages of a contest into its published folder; older ones are replaced.
+    """Write the pages of a contest into its published folder, in place of older ones.
 
     Args:
         folder: the folder, with contest.json and the folder "records".
@@ -39,7 +40,7 @@ def write_pages(folder: Path) -> None:
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file at once: whoever reads it meanwhile gets the old one or the new one, whole."""
+    """Write a file in one step: whoever reads it meanwhile gets the whole old or new file."""
     if path.is_file() and path.read_bytes() == data:
         return
     part = path.with_name(f".{path.name}.{token_hex(4)}.part")

@@ -1,4 +1,4 @@
-"""Serves what the office has written for everybody: the published contest, pictures of teams."""
+"""Serves what the office has written for everybody: the published contest, teams' pictures."""
 
 import asyncio
 import mimetypes
@@ -15,10 +15,11 @@ from lacoc_shared.words import say
 
 
 def published_routes(sheet: Path | None) -> list[BaseRoute]:
-    """Return two routes: of a published contest, and of the pictures of teams.
+    """Return two routes: of the published contest, and of the pictures of teams.
 
     Args:
-        sheet: the contest's newest sheet, beside which the folder is; None: there is no contest.
+        sheet: the contest's newest sheet; the published folder is beside it. None: there is no
+            contest.
     """
     if sheet is None:
         return []
@@ -51,7 +52,7 @@ def published_routes(sheet: Path | None) -> list[BaseRoute]:
 
 
 def _find(folder: Path, name: str) -> Path | None:
-    """Return a file of a folder; None if there is none, or it lies outside."""
+    """Return the path of a file in a folder; None if there is no such file, or it lies outside."""
     try:
         path = (folder / name).resolve()
         return path if path.is_relative_to(folder) and path.is_file() else None

@@ -1,7 +1,7 @@
 """The recordings that a gateway serves: finished ones, copies of matches just over, and forks.
 
-A court packs the record of a match when the next one opens. Until then the match that everybody has
-just seen would be missing, so the gateway packs a copy of what is there.
+A court packs the record of a match when the next one opens. Until then the match that has just
+ended would be missing from the list, so the gateway packs a copy of its segments.
 """
 
 import contextlib
@@ -24,7 +24,7 @@ _RECORDING = ".mcap"
 _SEGMENT = ".live.mcap"  # a match that is still being recorded
 _KEPT = 2000
 _ODDS_BYTES = 1 << 20
-"""A larger file of odds is not served; one of 50 moments has 10 kB."""
+"""A file of odds above this size is not served; one of 50 moments has 10 kB."""
 
 
 class ListedRecord(msgspec.Struct, frozen=True):
@@ -33,15 +33,15 @@ class ListedRecord(msgspec.Struct, frozen=True):
     name: str
     bytes: int
     modified: str
-    """Time of its last change, ISO 8601, UTC."""
+    """Time when the recording last changed, ISO 8601, UTC."""
     match: Summary | None
-    """Summary of the match; None: the file has none."""
+    """Summary of the match; None: the file contains no summary."""
 
 
 class Recordings:
     """The recordings of one folder; its methods may be called from any thread.
 
-    A link is no recording: it could lead to any file of the machine.
+    A symbolic link does not count as a recording: it could lead to any file of the machine.
 
     Args:
         folder: the folder; None: there are no recordings.
@@ -60,7 +60,7 @@ class Recordings:
         self._shown = shown
         self._copies = Scratch("recordings")
         self.own = self._copies.path
-        """Folder of the gateway's own records: copies, and forks that pages ask for."""
+        """Folder of the gateway's own recordings: copies, and forks that pages asked for."""
         self._copying: dict[str, subprocess.Popen[bytes]] = {}
         self._summaries: dict[tuple[Path, int, int], Summary | None] = {}
         self._lock = Lock()
@@ -98,7 +98,7 @@ class Recordings:
         return None
 
     def close(self) -> None:
-        """Delete the copies and forks."""
+        """Delete the gateway's copies and forks."""
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()
@@ -119,7 +119,10 @@ class Recordings:
         }
 
     def _copy(self) -> None:
-        """Start copying the matches that are over and not packed, unless some are kept back."""
+        """Start to copy matches that are over and not packed.
+
+        Copy none if the contest keeps some back.
+        """
         folder = self._folder
         for match_id in self._over() if folder is not None and self._shown is None else ():
             assert folder is not None

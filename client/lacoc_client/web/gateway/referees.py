@@ -1,4 +1,4 @@
-"""The referees of a court at this gateway: one page acts, the others watch."""
+"""The referees' pages of a court at this gateway: one page acts, the others watch."""
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
@@ -15,12 +15,12 @@ class Referees:
         self._acting: Viewer | None = None
 
     def enter(self, viewer: Viewer, token: str, by: str) -> None:
-        """Add a page that has entered with a token; it acts if no other page does."""
+        """Add a page that has shown a referee's token; it acts if no other page does."""
         self._entered[viewer] = (token, by)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:
-        """Let a page act in place of another.
+        """Let a page act in place of the page that acts now.
 
         Raises:
             UserError: if the page has not entered.
@@ -44,7 +44,7 @@ class Referees:
         return self._entered[viewer]
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page; if it acted, nobody acts."""
+        """Remove a page; if it was the acting page, nobody acts from now on."""
         if self._entered.pop(viewer, None) is None:
             return
         self._act(None if viewer is self._acting else self._acting)

@@ -1,4 +1,4 @@
-"""The route of the rules: all of them as a text, for whoever plays, also without the internet."""
+"""The route of the rules as a text, for players who may have no internet."""
 
 from starlette.requests import Request
 from starlette.responses import Response

@@ -1,4 +1,4 @@
-"""How the courts of a gateway stand: the small part of their newest frames that /contest shows."""
+"""How the courts of a gateway stand: the few values of their newest frames that /contest shows."""
 
 import msgspec
 from starlette.requests import Request
@@ -12,11 +12,11 @@ from lacoc_shared.seat import BEAT_S
 
 
 class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
-    """How a court stands."""
+    """How the match at a court stands."""
 
     court: str
     call: str
-    """Id of the call whose match the court has; "": none."""
+    """Id of the call with which the office gave the match to the court; "": it gave none."""
     phase: int
     clock_s: float
     """How long the match has been played [s]."""
@@ -29,7 +29,8 @@ class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
 def scores_route(courts: Courts) -> BaseRoute:
     """Return the route that says how all courts stand.
 
-    A page that asks takes no place of a spectator: it gets a few hundred bytes, not frames.
+    A page that asks does not count as a spectator with a place: it gets a few hundred bytes, not
+    frames.
 
     Args:
         courts: the courts of the gateway.
@@ -43,7 +44,7 @@ def scores_route(courts: Courts) -> BaseRoute:
 
 
 def _score(feed: CourtFeed) -> CourtScore | None:
-    """Return how a court stands; None while the court is silent, or before it was first heard."""
+    """Return how a court stands; None while the court is silent, or before its first frame."""
     stands, played = feed.picture.stands(), feed.picture.played()
     if not feed.connected or stands is None or played is None:
         return None

@@ -1,10 +1,10 @@
 """A seat held for a page: a controller on a thread of its own.
 
 The thread passes on at once what the page sends: keys and signs of life, each with the frame that
-the page showed. In between it repeats the newest command with the newest of these frames, so that a
-page that stutters stays alive, and its link is measured by nothing but its own answers. The thread
-stops when the page goes. Then the robot stands after a second (rules 3), and a page that comes back
-joins again.
+the page showed. In between it repeats the newest command with the newest of these frames. So the
+seat of a page that stutters does not become silent, and the delay of the page's link is measured
+only with frames that the page has shown. The thread ends when the page goes. Then the robot stands
+after a second (rules 3), and a page that comes back joins again.
 """
 
 import queue
@@ -22,14 +22,15 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 LOST_AFTER_S = 1.0
-"""Silence after which a page counts as gone, though nobody closed its connection."""
+"""A page that has sent nothing for this long counts as gone, even if its connection is still open
+[s]."""
 
 Answer = Callable[[Any, UserError | FileRefused | None], None]
-"""Takes the result of a job: its value, or the error."""
+"""Called with the result of a job: its value, or the error."""
 
 
 _OF_FILES = (FILES_REFUSED, "mistake.line")
-"""Notes of a court on files that it refused."""
+"""Codes of a court's notes about mistakes in files."""
 
 
 class _SeatJob(NamedTuple):
@@ -73,13 +74,16 @@ class SeatThread:
         self._thread.start()
 
     def do(self, job: Callable[[Controller], Any], answer: Answer) -> None:
-        """Give the controller a job; jobs are done in order, as soon as possible."""
+        """Give the controller's thread a job.
+
+        Jobs are done one after another, as soon as possible.
+        """
         self._jobs.put(_SeatJob(job, answer))
         if not self._thread.is_alive():
             self._refuse_rest()
 
     def end(self) -> None:
-        """Stop repeating the command now; the contestant keeps the seat."""
+        """Stop repeating the command now; the team does not give up the seat."""
         self._ended = True
         self._jobs.put(None)
 
@@ -142,7 +146,7 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Report a change of the seat."""
+        """Tell the page the state of the seat, if it has changed."""
         told: dict[str, Any] = {
             "seat": controller.seat,
             "index": controller.index,
@@ -167,7 +171,11 @@ class SeatThread:
 
 
 def _join(controller: Controller, wrong: FileRefused | None) -> tuple[Phrase, ...]:
-    """Join, and return the notes; `wrong` has the mistakes that were found before.
+    """Join the seat, and return the court's notes.
+
+    Args:
+        controller: the seat's controller.
+        wrong: mistakes that were found in the files before; None: there were none.
 
     Raises:
         FileRefused: if the court needs the files now and they have mistakes.

@@ -29,7 +29,7 @@ LOOPBACK = "127.0.0.1:0"
 _LISTEN = re.compile(r"(?P<host>\[[0-9A-Fa-f:.]+\]|[A-Za-z0-9_.-]+):(?P<port>[0-9]{1,5})")
 _LOOK_S = 0.1
 _RENEW_S = 5.0
-"""Time between two looks whether there is a newer certificate [s]."""
+"""Time between two checks whether the certificate was renewed [s]."""
 _ANY = ("0.0.0.0", "::")
 _PING_S, _GONE_S = 3.0, 20.0
 _BACKLOG = 512  # a whole hall opens its pages at once
@@ -39,7 +39,7 @@ class Port:
     """The port of a gateway, and how people reach its pages; used as a context manager.
 
     Args:
-        opened: the socket that listens.
+        opened: a socket that listens already.
         public: how others reach the pages.
 
     Raises:
@@ -63,13 +63,13 @@ class Port:
 
     @property
     def listens(self) -> str:
-        """Where it listens, as `listen` takes it: with the port that was free."""
+        """The address at which it listens, as `listen` takes it, with the real port number."""
         host, port = self.socket.getsockname()[:2]
         return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
     @property
     def url(self) -> str:
-        """Address of the pages as everybody opens them, without a slash at its end."""
+        """Address at which everybody opens the pages, without a slash at its end."""
         if self.public.pages:
             return self.public.pages
         host, port = self.socket.getsockname()[:2]
@@ -83,7 +83,7 @@ def listen(where: str, public: PublicAddress | None = None) -> Port:
     """Open the port of a gateway.
 
     Args:
-        where: "HOST:PORT"; port 0 takes a free one.
+        where: "HOST:PORT"; port 0 chooses a free port.
         public: how others reach the pages; None: at the address of this machine.
 
     Raises:
@@ -131,7 +131,7 @@ def serve(
         app: the gateway's application.
         port: the port; see `listen`.
         stopping: called several times a second.
-        most_bytes: longest message of a page; a longer one closes its connection.
+        most_bytes: longest message of a page; a longer message closes the page's connection.
     """
     asyncio.run(_serve(app, port, stopping, most_bytes))
 
@@ -187,18 +187,18 @@ async def _renew(certificate: Certificate) -> None:
 class _Server(uvicorn.Server):
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Leave signals to `stop_signals`: uvicorn's handlers would end the process."""
+        """Catch no signals here: `stop_signals` does, and uvicorn would end the process."""
         yield
 
 
 def run(app: ASGIApp, port: Port, ready: Callable[[], None], most_bytes: int = JOIN_BYTES) -> None:
-    """Serve until Ctrl-C.
+    """Serve pages until Ctrl-C.
 
     Args:
         app: the gateway's application.
         port: the port; see `listen`.
-        ready: called once signals are handled; it prints where the pages are.
-        most_bytes: longest message of a page; a longer one closes its connection.
+        ready: called when signals are caught; it prints the address of the pages.
+        most_bytes: longest message of a page; a longer message closes the page's connection.
     """
     with port, stop_signals() as stopping:
         ready()

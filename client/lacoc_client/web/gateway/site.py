@@ -1,4 +1,4 @@
-"""The gateway's paths: of pages (all are one HTML file), files, recordings and the WebSocket."""
+"""The gateway's routes: of pages (one HTML file for all), files, recordings and the WebSocket."""
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterable, Sequence
@@ -48,9 +48,9 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 LESSON = "/leg"
-"""Path of the lesson of one leg, which is served wherever there are pages."""
+"""Path of the lesson of one leg; every site with pages has it."""
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest", LESSON)
-"""Paths that all serve index.html; the page itself looks at its path."""
+"""Paths that all serve index.html; the script on the page looks which path it was opened at."""
 
 _OLD_NAMES = {"favicon.ico": "icon.svg"}
 KEY_HEADER = "X-Lacoc-Key"
@@ -60,17 +60,17 @@ _MCAP = "application/octet-stream"
 
 
 class More(Protocol):
-    """Pages that a gateway has besides its own."""
+    """Pages of another part of the program that a gateway serves too."""
 
     paths: Sequence[str]
-    """Paths of the pages."""
+    """Paths of these pages."""
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """Routes besides the routes of the pages."""
+        """Routes of these pages besides the HTML file."""
 
     async def close(self) -> None:
-        """Close what the pages need."""
+        """Close whatever these pages have opened."""
 
 
 def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
@@ -79,7 +79,7 @@ def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
     Args:
         home: the gateway's settings.
         files: the built pages.
-        more: further pages.
+        more: pages of other parts of the program.
     """
     courts = Courts(home)
     shown = ShownRecords(home.sheet) if home.keeps_back and home.sheet is not None else None
@@ -193,7 +193,7 @@ def fork_routes(
 
 
 def event_route(home: Home) -> BaseRoute:
-    """Return the route on which commands ask for the courts that a link leads to."""
+    """Return the route on which commands ask for an event's courts."""
     event = LinkedEvent(
         protocol=PROTOCOL, name=home.contest, courts=home.told, authority=home.authority
     )
@@ -242,7 +242,10 @@ def page_routes(
         return file_response(request, file, ASK_AGAIN)
 
     async def without_slash(request: Request) -> Response:
-        """Lead to the page itself: the addresses on it are relative to what stands beside it."""
+        """Redirect a path with a slash at its end to the page without it.
+
+        The addresses on a page are relative to its path without the slash.
+        """
         url = request.url
         name = url.path.rstrip("/").rpartition("/")[2]
         return RedirectResponse(f"../{name}" + (f"?{url.query}" if url.query else ""))
@@ -253,13 +256,16 @@ def page_routes(
         return _not_found(request) if file is None else file_response(request, file, FOR_EVER)
 
     async def top_file(request: Request) -> Response:
-        """Serve a file beside index.html: the icon, also by its old name."""
+        """Serve a file that stands beside index.html.
+
+        The icon can be fetched by its old name too.
+        """
         name = request.path_params["name"]
         file = await asyncio.to_thread(files.find, _OLD_NAMES.get(name, name))
         return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
 
     async def healthz(request: Request) -> Response:
-        """Say that the gateway answers, and how the request came here through proxies."""
+        """Answer that the gateway runs, and how the request came here through proxies."""
         forwarded = request.headers.get("x-forwarded-for", "")
         asks = [one.strip() for one in forwarded.split(",") if one]
         health = GatewayHealth(

@@ -1,4 +1,4 @@
-"""Threads for calls that wait for a court, so that the event loop never waits."""
+"""Threads for calls that wait for a court, so that the event loop does not wait for it."""
 
 import asyncio
 from collections.abc import Callable
@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Threads:
-    """A few threads; a call waits while all are busy.
+    """A few threads for calls; further calls wait while all threads are busy.
 
     Args:
         count: number of threads.
@@ -19,7 +19,7 @@ class Threads:
         self._pool = ThreadPoolExecutor(count, thread_name_prefix="asks")
 
     async def run(self, do: Callable[[], T]) -> T:
-        """Run a function on one of the threads."""
+        """Run a function on one of the threads, and return its result."""
         return await asyncio.get_running_loop().run_in_executor(self._pool, do)
 
     def close(self) -> None:

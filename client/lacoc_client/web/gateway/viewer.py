@@ -1,4 +1,4 @@
-"""One page: how often it gets a frame, and whether it may act."""
+"""One page of an audience: how often it gets a frame, and whether it may act."""
 
 import time
 from collections.abc import Callable
@@ -18,11 +18,11 @@ class Frames:
 
     sent: int = 0
     dropped: int = 0
-    """Frames that a page was too slow for; it got a newer one."""
+    """Frames that a page was too slow to get; it got a newer frame instead."""
 
 
 class Socket(Protocol):
-    """Where the messages to a page are written."""
+    """The object to which the messages to a page are written."""
 
     drained: Callable[[], None] | None
     """Called when all bytes that had to wait have been sent."""
@@ -31,20 +31,20 @@ class Socket(Protocol):
 
     @property
     def keeps_up(self) -> bool:
-        """True if everything written has been sent."""
+        """True if the page has received everything that was written."""
 
     def write(self, framed: bytes) -> None:
         """Send a finished frame."""
 
     def watch_closely(self) -> None:
-        """Look several times a second whether the page is there."""
+        """Check several times a second whether the page is still there."""
 
 
 class Viewer:
     """A page's place in a feed.
 
-    Frames have one slot: while the page is too slow, a newer frame replaces the waiting one.
-    Everything else is written at once; a page that does not take it is cut off.
+    While the page is too slow, one frame waits, and a newer frame replaces it. All other messages
+    are written at once; a page that does not take them is closed.
 
     Args:
         socket: the page's WebSocket, or what stands in its place.
@@ -57,11 +57,14 @@ class Viewer:
         self._next_s = 0.0
         self.frames = Frames()
         self.is_page = True
-        """Whether it takes the place of a page; else it is what stands for a crowd of them."""
+        """Whether this is one page; False: it stands for all pages that watch a picture in
+        pieces."""
         self.is_own = False
-        """Whether it is a page of the person who started the gateway: it showed the page key."""
+        """Whether the page has shown the page key, and so is one of the person who started the
+        gateway."""
         self.can_act = False
-        """Whether it may act: it is such a page, or a court has accepted its token."""
+        """Whether the page may act: it has shown the page key, or a court has accepted its
+        token."""
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
@@ -75,7 +78,7 @@ class Viewer:
         self.rate(max(hz, 1 / self._interval_s))
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """Send or store a frame, if one is due."""
+        """If a frame is due, send it, or store it while the page is too slow."""
         next_s = self._next_s
         if now_s < next_s - _EARLY_S:
             return
@@ -93,16 +96,16 @@ class Viewer:
         self._socket.write(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message if the page keeps up; a slow page misses it and gets a later one."""
+        """Send a message if the page keeps up; a slow page gets a later message of this kind."""
         if self._socket.keeps_up:
             self._socket.write(framed)
 
     def watch_closely(self) -> None:
-        """Check several times a second that the page is there."""
+        """Check several times a second whether the page is still there."""
         self._socket.watch_closely()
 
     def unheard_s(self) -> float:
-        """Return how long the page has sent nothing [s]; may be called from any thread."""
+        """Return for how long the page has sent nothing [s]; may be called from any thread."""
         return time.monotonic() - self._socket.heard_s
 
     def _send_slot(self) -> None:

@@ -1,4 +1,4 @@
-"""The first message to a page: which courts there are, and what it may do."""
+"""The first message to a page: which courts there are, and what the page may do."""
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.home import Home
@@ -12,9 +12,10 @@ def welcome(home: Home, court: str | None, can_act: bool = False, is_own: bool =
 
     Args:
         home: the gateway's settings.
-        court: the court that it watches; None: it follows the director, or there is no such court.
-        can_act: whether it may act, if a court accepts its token.
-        is_own: whether it is a page of the person who started the gateway.
+        court: the court that the page watches; None: it follows the director, or the court that it
+            named does not exist.
+        can_act: whether the page may act, once a court accepts its token.
+        is_own: whether this is a page of the person who started the gateway.
     """
     prefill = home.prefill if is_own else None
     filled = None

@@ -1,7 +1,8 @@
 """Messages between the gateway and a page (docs/gateway.md lists them).
 
-To a page: one byte of kind, then the payload; messages of a court are passed on unchanged. From a
-page: a msgpack map with its `id` and what to `do`; each is answered by a reply.
+A message to a page is one byte for its kind, then the payload; a court's messages are passed on
+unchanged. A message from a page is a msgpack map with an `id` and the kind of request, `do`; the
+gateway answers each with a reply.
 """
 
 from enum import IntEnum
@@ -21,18 +22,18 @@ from lacoc_shared.words import Phrase, say
 JOIN_BYTES = JOIN_MAX_BYTES
 """Longest message of a page; a longer one closes its connection."""
 REQUEST_BYTES = 4096
-"""Longest message that is not a join; a longer one is refused."""
+"""Longest message that does not ask for a join; a longer one is refused."""
 
 
 FAULT = say("gateway.fault")
 
 
 class Unreadable(UserError):
-    """A page sent something that is no known request."""
+    """A page sent something that is not a known request."""
 
 
 class TokenRefused(UserError):
-    """A court refuses a referee's token: showing the same one again is useless."""
+    """A court refused a referee's token, so it is useless to show this token again."""
 
 
 class MessageKind(IntEnum):
@@ -78,32 +79,37 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
     """A request of a page."""
 
     id: _Id
-    """Names the request; its reply has the same id."""
+    """Number of the request; its reply has the same number."""
 
 
 class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
-    """The first message: which court, how many frames a second, and who the page is."""
+    """The first request: which court the page watches, how many frames a second, and who it is."""
 
     court: _Short | None = None
     director: bool = False
-    """Whether the page follows the director, and not one court; it can't act then."""
+    """Whether the page follows the director instead of one court; then it can't act."""
     aside: bool = False
-    """Whether it follows the director's second picture, not the first one."""
+    """Whether the page follows the director's second picture instead of the first."""
     hz: float | None = None
     key: _Token | None = None
-    """The gateway's page key, if it is a page of the person who started the gateway."""
+    """The gateway's page key, which only the person who started the gateway has; None: another
+    page."""
     token: _Token | None = None
-    """The token of its team or referee, with which it will act; None: it only watches."""
+    """The token of a team or a referee with which the page will act; None: the page only
+    watches."""
 
 
 class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
-    """Set the frames a second."""
+    """Set how many frames a second the page gets."""
 
     hz: float
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life. It says how far the court is, if the page has one."""
+    """Ask for a reply, as a sign of life.
+
+    The reply says how long an answer of the court takes, if the page has a court.
+    """
 
     t: float | int | str | None = None
 
@@ -118,9 +124,8 @@ class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
     postures: SentFile | None = None
     locomotion: SentFile | None = None
     sequences: tuple[tuple[_Digit, ...], ...] | None = None
-    """Postures of each key of level B, if there is no locomotion file; None: as in the sample's
-    keys.
-    """
+    """The postures that each key of level B goes through, if there is no locomotion file; None: as
+    in the sample gait."""
 
 
 class WhereAsk(Ask, frozen=True, kw_only=True, tag="where"):
@@ -137,22 +142,22 @@ class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
 
 
 class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
-    """Give the seat up."""
+    """Give up the seat."""
 
 
 class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
-    """Press a key, having seen a frame."""
+    """Press a key, as an answer to a frame that the page has shown."""
 
     level: Annotated[int, msgspec.Meta(ge=0, le=1)]
     key: Annotated[int, msgspec.Meta(ge=0, le=10)]
     match: _Count
     """The match of the frame that the page showed when the key was pressed."""
     beat: _Count
-    """Its beat."""
+    """The beat of this frame."""
 
 
 class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
-    """Show a sign of life of a page that holds a seat: it shows a new frame."""
+    """Report that the page has shown a new frame: a sign of life of a page that holds a seat."""
 
     match: _Count
     beat: _Count
@@ -171,11 +176,11 @@ class TryAsk(Ask, frozen=True, kw_only=True, tag="try"):
     first: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
     until: Annotated[int, msgspec.Meta(ge=0, le=TRY_OUT_TICKS)]
     drawn: bool = False
-    """Whether the reply needs the scene."""
+    """Whether the reply must contain the scene, so that the page can draw the robot."""
 
 
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
-    """Enter as a referee."""
+    """Enter as a referee, with a name."""
 
     token: _Token
     by: _Short
@@ -186,17 +191,17 @@ class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):
 
 
 class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
-    """Decide as a referee."""
+    """Make a decision as a referee."""
 
     decision: Decision
     reason: Phrase | str = ""
 
 
 class OutlookAsk(Ask, frozen=True, kw_only=True, tag="outlook"):
-    """Ask as a referee what would happen if play went on."""
+    """Ask, as a referee, what would happen if play went on."""
 
     decision: Decision | None = None
-    """What would be decided before; None: nothing."""
+    """A decision that would be made before play goes on; None: no decision."""
 
 
 Asked = (
@@ -247,10 +252,10 @@ def read(data: bytes) -> Asked:
 
 
 def do_of(data: bytes) -> str:
-    """Return what a request wants done (`do`), if nothing else of it can be read.
+    """Return the kind of a request (`do`), when its other fields can't be read.
 
     Raises:
-        msgspec.DecodeError: if it does not say so.
+        msgspec.DecodeError: if it has no kind.
     """
     return _any_do.decode(data).do
 
@@ -263,7 +268,10 @@ def too_long(size: int, most: int) -> Unreadable:
 
 
 def read_id(data: bytes) -> int | None:
-    """Return the id of a message of which nothing else can be read; None: it has no id either."""
+    """Return the id of a request whose other fields can't be read.
+
+    None: its id can't be read either.
+    """
     try:
         return _any_id.decode(data).id
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
@@ -283,18 +291,18 @@ def message(kind: MessageKind, payload: bytes) -> bytes:
 
 
 def inside(framed: bytes) -> bytes:
-    """Return a message that `message` made without its WebSocket frame: kind and payload."""
+    """Take off the WebSocket frame of a message that `message` made; return kind and payload."""
     return framed[{126: 4, 127: 10}.get(framed[1], 2) :]
 
 
 def opened(framed: bytes) -> tuple[MessageKind, bytes]:
-    """Return the kind and the payload of a message that `message` made."""
+    """Return kind and payload, separately, of a message that `message` made."""
     data = inside(framed)
     return MessageKind(data[0]), data[1:]
 
 
 def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:
-    """Make a message of the gateway's own, as a WebSocket frame."""
+    """Make a WebSocket frame with a message of the gateway itself, a msgpack map."""
     return message(kind, encode(value))
 
 
@@ -303,7 +311,7 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
     Args:
         own: the files.
-        used: version of the files with which the page now asks for a seat; None: it does not ask.
+        used: version of the files with which the page is asking for a seat; None: it is not asking.
     """
     names = {name: file.name if file else "" for name, file in own.files._asdict().items()}
     refused = own.refused
@@ -319,12 +327,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
 
 def reply(to: int, value: Any) -> bytes:
-    """Make the answer to a request."""
+    """Make the reply to a request that was done."""
     return map_message(MessageKind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
-    """Make the answer to a request that was not done."""
+    """Make the reply to a request that was refused."""
     mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,

@@ -1,5 +1,5 @@
 """The pages /office and /enter: their requests go to the desk of the contest's office.
 
-`desk` is the connection to the desk, `links` makes a team's link and its QR code, `desk_page` is
-one page's connection, `site` has the paths. Secrets are checked by the desk, not here.
+`desk` is the connection to the desk, `links` makes links and their QR codes, `desk_page` is the
+connection of one page, `site` has the paths. The desk checks all secrets; this package checks none.
 """

@@ -19,7 +19,8 @@ from lacoc_shared.words import say
 
 _THREADS = 8
 _ANSWER_S = 30.0
-"""Longest wait for an answer [s]: the desk first weighs in the files, after those sent before."""
+"""Longest wait for an answer [s]: the desk weighs in the files of this request and of all before
+it."""
 _COMING_BACK_S, _AGAIN_S = 1.0, 0.05
 
 
@@ -41,7 +42,7 @@ class DeskLine:
 
         Raises:
             FileRefused: if the desk found mistakes in files.
-            NotNow: if the office is not there, or has too much to do.
+            NotNow: if the office is not running, or has too much to do.
             NoAnswer: if the desk got the request and does not answer in time.
             UserError: if the desk refuses.
         """

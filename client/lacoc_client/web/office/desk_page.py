@@ -28,7 +28,7 @@ _WRONG = (
     "desk.slower",
     "refused.no-referee-token",
 )
-"""Codes with which the desk refuses a secret."""
+"""The codes of refusals that mean that a secret was wrong."""
 
 
 class DeskAsk(Ask, frozen=True, kw_only=True, tag="desk"):
@@ -70,13 +70,13 @@ def read(data: bytes) -> Asked:
 
 
 class DeskPage:
-    """One page's connection.
+    """The connection of one page /office or /enter.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
         desk: the connection to the desk.
         guesses: slows down whoever shows wrong secrets.
-        hand_ins: counts how often files are handed in.
+        hand_ins: limits how often files are handed in.
         make: makes links.
     """
 

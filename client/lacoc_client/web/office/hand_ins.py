@@ -1,4 +1,4 @@
-"""How often files may be handed in: each time the office weighs in a robot and a gait."""
+"""Limits how often files may be handed in: each time the office weighs in a robot and a gait."""
 
 import msgspec
 
@@ -8,11 +8,11 @@ from lacoc_shared.words import say
 
 _APPLY_MINUTES = 1
 _APPLICATIONS = 80
-"""Applications from one machine at once; then one a minute. A school behind one address has 35
-teams, and some of them try twice."""
+"""So many applications may come from one machine at once, and then one a minute. A school behind
+one address has 35 teams, and some of them try twice."""
 _CHANGE_S = 10
 _CHANGES = 10
-"""Changes of a team's files at once; then one each `_CHANGE_S`."""
+"""So many times at once may a team change its files, and then once in `_CHANGE_S`."""
 
 
 class _Kind(msgspec.Struct):
@@ -21,18 +21,19 @@ class _Kind(msgspec.Struct):
 
 
 class HandIns:
-    """Counts the requests to the desk that hand files in."""
+    """Limits the requests to the desk that hand in files."""
 
     def __init__(self) -> None:
         self._applications = Allowances(1 / (60 * _APPLY_MINUTES), _APPLICATIONS)
         self._changes = Allowances(1 / _CHANGE_S, _CHANGES)
 
     def count(self, machine: str, request: bytes, now_s: float) -> None:
-        """Count a request; those that hand in nothing are not counted.
+        """Count a request if it hands in files.
 
         Args:
             machine: address of the machine that sent it.
-            request: an encoded request; what is none is left to the desk.
+            request: an encoded request; one that can't be decoded is not counted: it is left to the
+                desk.
             now_s: time on a clock that never goes back [s].
 
         Raises:

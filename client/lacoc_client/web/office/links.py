@@ -1,4 +1,4 @@
-"""The links that an organiser hands out, each with its QR code; pure."""
+"""The links that an organiser gives out, each with its QR code. Pure."""
 
 import io
 from functools import lru_cache
@@ -32,7 +32,7 @@ class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of one of the staff to the organiser's page."""
+    """The link of a member of the staff to the organiser's page."""
 
     name: str
     link: str
@@ -41,11 +41,11 @@ class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of a seat in open matches."""
+    """The link of an open seat, for friendly matches."""
 
     court: str
     seat: str
-    """The arena's name of the seat."""
+    """Id of the seat in its arena."""
     link: str
     qr: str
     """The link as a QR code: a picture in SVG."""
@@ -56,7 +56,7 @@ class ContestLinks(msgspec.Struct, frozen=True, kw_only=True):
 
     enter: str
     enter_qr: str
-    """That address as a QR code: a picture in SVG."""
+    """The address at which teams enter, as a QR code: a picture in SVG."""
     teams: tuple[TeamLink, ...]
     referees: tuple[RefereeLink, ...]
     seats: tuple[SeatLink, ...] = ()
@@ -86,12 +86,12 @@ class LinkMaker:
         return SeatLink(court=court, seat=seat, link=link, qr=qr_code(link))
 
     def staff(self, name: str, token: str) -> StaffLink:
-        """Make the link of one of the staff with the token."""
+        """Make the link of a member of the staff with the token."""
         link = self._link("office", token)
         return StaffLink(name=name, link=link, qr=qr_code(link))
 
     def referee(self, court: str, token: str) -> RefereeLink:
-        """Make the link of a court's referee with the desk's token."""
+        """Make the link of a court's referee, with the token that opens the referee's desk."""
         link = Link(
             pages=self.address,
             page="referee",

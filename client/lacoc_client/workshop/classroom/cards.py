@@ -1,4 +1,4 @@
-"""The card of a student, as the teacher sees it: how far, how fast, who needs help."""
+"""The card of a student for the teacher: how far and how fast the student is, who needs help."""
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
@@ -16,17 +16,18 @@ from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import Phrase, say
 
 Need = Literal["hand", "stuck", "quiet", ""]
-"""Why a student needs help: a raised hand, equal failures, or nothing done for long."""
+"""Why a student needs help: the hand is up, several trials failed in the same way, or the student
+has done nothing for long."""
 
 QUIET_S = 300.0
-"""A student who is there and does nothing for so long is quiet [s]."""
+"""A student who has a page open and does nothing for this time counts as quiet [s]."""
 _EQUAL_FAILURES = 3
 _LEANS, _BELLY, _SLOW_MM_S, _STANDS_S = 0.8, 0.05, 15.0, 2.0
 _FORWARD = "B2"
 
 
 class Card(msgspec.Struct, frozen=True, kw_only=True):
-    """One student at a glance."""
+    """A student at a glance, for the teacher's page."""
 
     name: str
     online: bool
@@ -36,37 +37,37 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     states: tuple[State, ...]
     """State of each phase, from phase 0."""
     lesson_step: int
-    """The step of the lesson of one leg to which the student came last; 0: none yet."""
+    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
     in_lesson: bool
-    """Whether a page of the lesson is open."""
+    """Whether the student has a page of the lesson open."""
     share: float
-    """How much of the phase that the student is at is done, from 0 to 1."""
+    """How much of the student's present phase is done, from 0 to 1."""
     missing: Phrase | None
-    """What is missing in that phase; None: nothing."""
+    """What the student must still do in this phase; None: nothing."""
     tries: int
     best_mm_s: float | None
     """Highest forward speed of a trial with key B2 that stayed upright and off the floor; None:
     there was no such trial."""
     last_mm_s: float | None
-    """Forward speed of the last trial; None: there was no trial."""
+    """Forward speed of the last trial [mm/s]; None: there was no trial."""
     legs: tuple[str, ...]
-    """Labels of the legs of `feet`."""
+    """Labels of the legs, in the order of `feet`."""
     feet: tuple[tuple[tuple[float, float], ...], ...] | None
-    """For each leg when its foot was down, as shares of the time that the last trial measured;
-    None: no trial since the class was opened."""
+    """For each leg the times in which its foot was down in the last trial, each as begin and end,
+    in shares of the measured time; None: there was no trial since the class was opened."""
     said: Phrase | None
-    """First sentence that explains the last trial."""
+    """First sentence of the explanation of the last trial."""
     hand_up_s: float | None
-    """Time since when the hand is up; None: it is not."""
+    """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
     stuck: Phrase | None
-    """What went wrong in the same way several times in a row; None: nothing did."""
+    """What went wrong in the same way in the last three trials; None: this is not so."""
     coached: bool
-    """Whether the student took over what the coach found."""
+    """Whether the student has taken over a gait that the coach found."""
     need: Need
 
 
 class SeenStudent(msgspec.Struct, frozen=True, kw_only=True):
-    """What a card needs to know of a student besides the evidence."""
+    """What a student's card shows besides the evidence."""
 
     name: str
     online: bool = False
@@ -83,8 +84,8 @@ def card(
     """Make a student's card.
 
     Args:
-        seen: what is known besides evidence.
-        evidence: all that the student did, in order.
+        seen: the facts about the student besides the evidence.
+        evidence: all evidence of the student, in order.
         progress: how far the student is.
         now_s: time in seconds since 1970 (UTC).
     """
@@ -126,7 +127,7 @@ def card(
 
 
 def hand_times(kept: Iterable[tuple[float, Evidence]]) -> float | None:
-    """Return when the hand that is up now was raised; None: no hand is up.
+    """Return when the student raised the hand that is up now; None: the hand is not up.
 
     Args:
         kept: evidence of one student, each with its time [s], in order.
@@ -136,7 +137,7 @@ def hand_times(kept: Iterable[tuple[float, Evidence]]) -> float | None:
 
 
 def stuck(tries: Sequence[TrialFacts]) -> Phrase | None:
-    """Return what went wrong if the last three trials failed in the same way; else None."""
+    """Return what went wrong, if the last three trials failed in the same way; else None."""
     last = [failure(facts) for facts in tries[-_EQUAL_FAILURES:]]
     if len(last) < _EQUAL_FAILURES or any(one != last[0] for one in last):
         return None
@@ -144,7 +145,7 @@ def stuck(tries: Sequence[TrialFacts]) -> Phrase | None:
 
 
 def failure(facts: TrialFacts) -> Phrase | None:
-    """Return the worst thing that went wrong in a trial; None: nothing did."""
+    """Return the worst thing that went wrong in a trial; None: nothing went wrong."""
     if facts.stopped:
         return say("class.failed-stopped")
     if facts.upright < _LEANS:
@@ -162,9 +163,9 @@ def failure(facts: TrialFacts) -> Phrase | None:
 
 
 def foot_runs(trial: TrialReply) -> tuple[tuple[tuple[float, float], ...], ...]:
-    """Return for each leg the times in which its foot was down, each with its begin and end.
+    """Return for each leg the times in which its foot was down, each as begin and end.
 
-    Begin and end are parts of the measured time, from 0 to 1.
+    Begin and end are shares of the measured time, from 0 to 1.
     """
     legs = len(trial.figures["duty"])
     down = np.frombuffer(trial.down, np.uint8)[trial.first : trial.end]

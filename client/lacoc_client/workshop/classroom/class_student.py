@@ -12,7 +12,7 @@ from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
-"""Name under which the hashes of a student's tokens are kept."""
+"""Name of the document with the hashes of a student's tokens."""
 _MOST_BROWSERS = 4
 
 
@@ -28,18 +28,24 @@ class ClassStudent(Student):
     def __init__(self, name: str, diary: Diary, rules: Callable[[], StudentRules]) -> None:
         super().__init__(name, diary, rules)
         self.token_hashes: tuple[str, ...] = ()
-        """Hashes of the tokens of the browsers that may come in, the newest last."""
+        """Hashes of the tokens of the browsers that may enter as this student, the newest last."""
         self.is_admitting = True
-        """Whether the next browser with the class code gets a token."""
+        """Whether another browser may enter under this name with the class code, and then gets a
+        token."""
         self.seen_s = 0.0
         """Time when the student last did something, in seconds since 1970 (UTC)."""
         self.hand_up_s: float | None = None
-        """Time since when the hand is up."""
+        """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
         self._trial: TrialReply | None = None
         self._last: Card | None = None
 
     def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
-        """Load what the class file has of this student, in the file's order."""
+        """Load the evidence and documents of this student from the class file.
+
+        Args:
+            evidence: the student's evidence, in the file's order.
+            documents: the student's documents.
+        """
         documents = list(documents)
         self.diary.begin((one.evidence for one in evidence), documents)
         self.open_kept()
@@ -51,7 +57,7 @@ class ClassStudent(Student):
 
     @property
     def is_idle(self) -> bool:
-        """Whether the student has no page open, and has never done more than come in."""
+        """Whether the student has no page open and has done nothing except enter the class."""
         did = any(not isinstance(one, JoinedClass) for one in self.diary.evidence)
         return not (self.viewers or self.lessons or did or self.draft)
 
@@ -63,14 +69,17 @@ class ClassStudent(Student):
         self.hand_moved()
 
     def hand_moved(self) -> None:
-        """Note when the student's hand went up, or that it is down."""
+        """Note the time at which the student's hand went up, or that it is not up."""
         if not self.diary.progress.hand_up:
             self.hand_up_s = None
         elif self.hand_up_s is None:
             self.hand_up_s = time.time()
 
     def add_token(self, token_hash: str) -> None:
-        """Let one more browser in with a token; the oldest of too many is not let in again."""
+        """Let one more browser in with a token.
+
+        If there are too many browsers, the oldest loses its token.
+        """
         self.token_hashes = (*self.token_hashes, token_hash)[-_MOST_BROWSERS:]
         self.is_admitting = False
 
@@ -95,5 +104,5 @@ class ClassStudent(Student):
         return now
 
     async def keep_token(self) -> None:
-        """Write the tokens' hashes to the disk."""
+        """Write the hashes of the tokens to the disk."""
         await self.diary.write(TOKEN, " ".join(self.token_hashes).encode())

@@ -60,11 +60,11 @@ CLASS_FILE = "lacoc-class.sqlite"
 _T = TypeVar("_T", Kept, Document)
 
 _SOON_S = 0.1
-"""How soon pages are told that a studio has come or gone [s]."""
+"""Time after which pages are told that a studio has come or gone [s]."""
 _ALIVE_S = 1.0
-"""How often students' pages get a sign of life [s]."""
+"""Time between two signs of life to students' pages [s]."""
 _QUIET_LOOK_S = 10.0
-"""How often to look for students who have done nothing for long [s]."""
+"""Time between two searches for students who have done nothing for long [s]."""
 
 
 class Classroom:
@@ -73,7 +73,7 @@ class Classroom:
     Args:
         folder: folder of the class.
         studios: the connections to the studios; they are started and closed here.
-        addresses: addresses that students can open.
+        addresses: addresses of the class that students can open.
         robot: the robot of the class; None: the workshop's.
 
     Raises:
@@ -95,9 +95,9 @@ class Classroom:
         self.addresses = tuple(addresses)
         self.state: ClassState = fresh_state()
         self.students: dict[str, ClassStudent] = {}
-        """Everybody who ever came in, by `same_name` of the nickname."""
+        """All students who ever entered, by `same_name` of the nickname."""
         self.teachers: dict[Viewer, None] = {}
-        """The teacher's pages."""
+        """The open pages of the teacher."""
         self.tournament = Tournament(folder, self._tell_tournament)
         self._keeper = Keeper(folder / CLASS_FILE)
         self.groups = Groups(self._store, self._keep_groups, self.students)
@@ -140,11 +140,11 @@ class Classroom:
     # What students do
 
     async def enter(self, hello: requests.Hello, where: str) -> LetIn:
-        """Let a student in who shows a token, or the class code and a nickname (`Host.enter`)."""
+        """Let a student in: with a token, or with the class code and a nickname (`Host.enter`)."""
         return await self._door.enter(hello, where)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Send a page what it shows first (`Host.greet`)."""
+        """Send a page the messages that it shows first (`Host.greet`)."""
         assert isinstance(student, ClassStudent)
         student.greet(viewer, lesson)
         student.seen_s = time.time()
@@ -166,14 +166,14 @@ class Classroom:
         self._tell_card(student)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell the student and the teacher what has changed (`Host.learned`)."""
+        """Tell the student's pages and the teacher what a student has done (`Host.learned`)."""
         assert isinstance(student, ClassStudent)
         student.learned(trial)
         student.tell()
         self._tell_card(student)
 
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
-        """Do what a student asks of the groups (`Host.group`)."""
+        """Do what a student asks about groups, such as join one (`Host.group`)."""
         assert isinstance(student, ClassStudent)
         self.groups.spend(student)
         match asked.act:
@@ -188,16 +188,16 @@ class Classroom:
                 student.tell()
 
     def sample(self) -> FileContent:
-        """Read the robot's sample postures; empty if the robot has no sample. May block."""
+        """Return the sample postures of the class's robot; empty if it has none. May read files."""
         return sample_postures(self._robot_name)
 
     # What the teacher does
 
     def find(self, name: str) -> ClassStudent:
-        """Return a student.
+        """Return a student by name.
 
         Raises:
-            UserError: if there is none of this name.
+            UserError: if there is no student of this name.
         """
         student = self.students.get(same_name(name))
         if student is None:
@@ -205,13 +205,13 @@ class Classroom:
         return student
 
     async def set_rules(self, rules: StudentRules) -> None:
-        """Set what students may do, and tell everybody."""
+        """Set what students may do, and tell all students and the teacher."""
         await self._set(rules=rules)
         for student in self.students.values():
             student.tell()
 
     async def set_code(self) -> None:
-        """Make another class code. Students who are in the class stay in it."""
+        """Make another class code. Students who have entered stay in the class."""
         await self._set(code=new_code())
 
     async def hand_out(
@@ -237,7 +237,11 @@ class Classroom:
             student.send(handed.message())
 
     async def put_into_group(self, student: ClassStudent, name: str) -> None:
-        """Put a student into a group, or out of it ("").
+        """Put a student into a group, or let the student work alone.
+
+        Args:
+            student: the student.
+            name: name of the group; "": none.
 
         Raises:
             UserError: if the group is full, or its name is not allowed.
@@ -248,18 +252,18 @@ class Classroom:
             await self.groups.leave(student)
 
     async def lower(self, student: ClassStudent) -> None:
-        """Take a student's hand down."""
+        """Take down the raised hand of a student."""
         await student.diary.add(Hand(up=False))
         student.hand_moved()
         student.tell()
         self._tell_card(student)
 
     async def admit(self, student: ClassStudent) -> None:
-        """Let in, as this student, one more browser with the class code and the student's name."""
+        """Allow one more browser to enter under a student's name with the class code."""
         student.is_admitting = True
 
     async def forget(self, student: ClassStudent) -> None:
-        """Delete all that is kept of a student.
+        """Delete everything that is kept of a student.
 
         Raises:
             UserError: if the class file can't be written; then the student stays.
@@ -273,7 +277,7 @@ class Classroom:
         self._tell(gone_message(student.name))
 
     async def evidence(self) -> list[Kept]:
-        """Read the evidence of everybody.
+        """Read the evidence of all students.
 
         Raises:
             UserError: if the class file can't be read.
@@ -285,7 +289,7 @@ class Classroom:
         return (await self._store()).documents()
 
     def add_teacher(self, viewer: Viewer) -> None:
-        """Add a page of the teacher, and tell it everything."""
+        """Add a page of the teacher, and send it everything about the class."""
         self.teachers[viewer] = None
         cards = [student.card() for student in self.students.values()]
         viewer.send(self._class_message(cards))
@@ -300,7 +304,7 @@ class Classroom:
         return student
 
     async def _set(self, **changes: Any) -> None:
-        """Change and keep settings of the class, and tell the teacher."""
+        """Change settings of the class, write them to the class file, and tell the teacher."""
         self.state = msgspec.structs.replace(self.state, **changes)
         with suppress(UserError):  # the message has the reason as `trouble`
             await asyncio.wrap_future((await self._store()).write(self.state.kept()))
@@ -338,7 +342,10 @@ class Classroom:
         await self._set(groups=tuple(self.groups.states.values()))
 
     def _handed(self, student: ClassStudent) -> Handed | None:
-        """Return the last table that was handed out to a student; None: there was none."""
+        """Return the last table that was handed out to a student, to all or to the group.
+
+        None: none was.
+        """
         state = self.groups.of(student)
         both = (self.state.handed, state.handed if state is not None else None)
         found = [one for one in both if one is not None]
@@ -366,7 +373,7 @@ class Classroom:
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
-    """Group evidence or documents by the name of the student; the order within a group stays."""
+    """Group evidence or documents by student, without a change of the order for each student."""
     groups: dict[str, list[_T]] = {}
     for one in kept:
         groups.setdefault(one.student, []).append(one)

@@ -1,4 +1,4 @@
-"""The door of a class: who comes in, by token, or by class code and nickname."""
+"""The door of a class: checks who may enter, by token, or by class code and nickname."""
 
 import asyncio
 import time
@@ -24,10 +24,10 @@ class ClassDoor:
     """Lets students into a class.
 
     Args:
-        students: everybody who ever came in, by `same_name` of the nickname.
+        students: everybody who ever entered, by `same_name` of the nickname.
         code: returns the class code.
         new: makes a student and adds it to `students`.
-        forget: deletes all that is kept of a student.
+        forget: deletes everything that is kept of a student.
     """
 
     def __init__(
@@ -43,17 +43,17 @@ class ClassDoor:
         self._forget = forget
         self._guesses = Guesses()
         self._coming = asyncio.Lock()
-        """Held while a student gets a nickname."""
+        """Held while a new student gets a nickname, so that two can't get the same."""
 
     async def enter(self, hello: requests.Hello, where: str) -> LetIn:
-        """Let a student in who shows a token, or the class code and a nickname.
+        """Let a student in: with a token, or with the class code and a nickname.
 
         Args:
-            hello: what the page shows.
-            where: where it comes from; guesses of the code are counted by it.
+            hello: the token, or the code and the nickname.
+            where: address of the machine; wrong codes are counted for each machine.
 
         Raises:
-            UserError: with what the page must show.
+            UserError: if the student may not enter; the page shows the sentence.
         """
         if hello.token:
             student, token = self._known(hello), hello.token
@@ -73,7 +73,7 @@ class ClassDoor:
         return student
 
     async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
-        """Check the class code and the nickname, and return the student, who may be new."""
+        """Check the class code and the nickname; return the student of this name, made if new."""
         if not hello.code:
             raise UserError(say("class.enter"))
         if read_code(hello.code) != self._code():
@@ -98,7 +98,7 @@ class ClassDoor:
         return student
 
     async def _make_room(self) -> None:
-        """Forget the first student who has done nothing and has no page open.
+        """Make room for a new student: delete the first one who did nothing and has no page open.
 
         So nobody can keep others out by entering under a hundred nicknames.
 

@@ -20,9 +20,9 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[Document]) -> list[Document]:
-    """Return the gait and robot files of all tables; tokens and settings are left out.
+    """Return the gait and robot files of all tables in a class file.
 
-    The table of a group is under the group's name.
+    Documents that are no tables are left out. The files of a group are under the group's name.
     """
     kept = list(kept)
     by_owner: dict[str, list[Document]] = {}

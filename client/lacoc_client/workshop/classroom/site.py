@@ -1,4 +1,4 @@
-"""The paths of a class."""
+"""The routes of a class."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager

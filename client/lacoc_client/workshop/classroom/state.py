@@ -1,4 +1,4 @@
-"""The settings of a class: code, key, rules, groups, and the table that was handed out."""
+"""The settings of a class: code, page key, rules, groups, and the table that was handed out."""
 
 import time
 
@@ -12,7 +12,8 @@ from lacoc_client.workshop.phases.class_file import Document
 from lacoc_shared.contest.codes import new_code
 
 NAME, NOBODY = "class", ""
-"""Name under which it is kept, and the student whose it is: nobody's."""
+"""Name under which the settings are kept as a document, and the "student" to whom this document
+belongs."""
 
 
 class ClassState(msgspec.Struct, frozen=True, kw_only=True):
@@ -21,16 +22,16 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
     code: str
     """The class code."""
     key: str
-    """The page key of the teacher: it is the same after each start, so pages stay open."""
+    """The page key of the teacher. It stays the same at each start, so open pages go on working."""
     rules: StudentRules = FREE
     handed: Handed | None = None
-    """The last table that was handed out to all."""
+    """The last table that was handed out to all students; None: none was."""
     handed_count: int = 0
-    """How many tables were handed out, to all or to groups."""
+    """How many tables have been handed out, to all students or to groups."""
     groups: tuple[GroupState, ...] = ()
 
     def kept(self) -> Document:
-        """Return the settings as a class file keeps them."""
+        """Return the settings as a document for the class file."""
         return Document(NOBODY, NAME, "", time.time(), msgspec.json.encode(self))
 
 
@@ -40,7 +41,7 @@ def fresh_state() -> ClassState:
 
 
 def read_state(kept: Document) -> ClassState | None:
-    """Decode kept settings; None if they are of another version of this program."""
+    """Decode the settings from a class file; None if another version of the program wrote them."""
     try:
         state = msgspec.json.decode(kept.content, type=ClassState)
     except (msgspec.DecodeError, UnicodeDecodeError):

@@ -1,4 +1,4 @@
-"""A friendly tournament of a class's gaits: the bot `planner` steers them, and all may watch."""
+"""A friendly tournament of a class's gaits: the bot `planner` steers the robots; all may watch."""
 
 import asyncio
 import os
@@ -45,17 +45,17 @@ class ClassMatch(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LeftOut(msgspec.Struct, frozen=True, kw_only=True):
-    """A player who can't play."""
+    """A player who can't play in the tournament."""
 
     name: str
     mistakes: tuple[Mistake, ...] = ()
     """What is wrong in the files."""
     why: Phrase | None = None
-    """Another reason; None: the mistakes say it."""
+    """Another reason why the player can't play; None: the mistakes are the reason."""
 
 
 class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
-    """How a tournament goes."""
+    """How far a tournament is."""
 
     state: Literal["none", "running", "done", "stopped"] = "none"
     arena: str = ""
@@ -64,12 +64,12 @@ class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
     of: int = 0
     """Number of all matches."""
     matches: tuple[ClassMatch, ...] = ()
-    """The matches that have ended, in this order."""
+    """The matches that have ended, in the order in which they ended."""
     standings: tuple[PlayerStanding, ...] = ()
-    """The best first; empty until a match has ended."""
+    """The standings, the best player first; empty until a match has ended."""
     left_out: tuple[LeftOut, ...] = ()
     trouble: Phrase | None = None
-    """Why the tournament ended early; None: it did not, or it was told to."""
+    """Why the tournament ended too early; None: it did not, or somebody stopped it."""
 
 
 class Tournament:
@@ -96,13 +96,15 @@ class Tournament:
         """Start a tournament; `state` has its matches and standings.
 
         Args:
-            players: robot and gait of each player, by nickname; whoever has no level B is left out.
+            players: robot and gait of each player, by nickname; players without a file for level B
+                are left out.
             arena: the game.
             rounds: how many other players each player meets.
             seconds: length of a match [s].
 
         Raises:
-            UserError: if a tournament runs, or fewer than two have a gait that walks.
+            UserError: if a tournament is being played, or fewer than two players have a file for
+                level B.
         """
         if self.state.state == "running":
             raise UserError(say("tournament.runs"))
@@ -122,7 +124,7 @@ class Tournament:
         self._tell()
 
     async def stop(self) -> None:
-        """End the tournament, if one is played; the matches that have ended stay."""
+        """End the tournament, if one is being played; the matches that have ended stay."""
         if self._playing is None:
             return
         self._stopping = True
@@ -179,7 +181,7 @@ class Tournament:
         return None if why is None else say("tournament.ended", why=why)
 
     def _take(self, line: OutputLine, teams: "Mapping[str, _TournamentPlayer]") -> None:
-        """Take in a line that `lacoc simulate` printed."""
+        """Change the state of the tournament by a line that `lacoc simulate` printed."""
         match line:
             case LeftOutLine():
                 out = teams[line.player].left_out(line)
@@ -212,7 +214,7 @@ class Tournament:
 
 
 class _TournamentPlayer(msgspec.Struct, frozen=True):
-    """A player of the tournament: the nickname, and what the player calls each file.
+    """A player of the tournament: the nickname, and the player's own names of the files.
 
     `files` maps the name under which a file was written to the name that the player gave it.
     """
@@ -232,7 +234,7 @@ def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _Tourn
     """Write the files of each player into a folder.
 
     Returns:
-        The players, by the word that stands for each on the command line.
+        The players, by the word that names each player on the command line.
 
     Raises:
         OSError: if a file can't be written.

@@ -1,1 +1,1 @@
-"""The page /design, on which a student designs a gait: its files, its studio and its phases."""
+"""The page /design, on which a student designs a gait: with files, a studio and the phases."""

@@ -1,4 +1,4 @@
-"""The connection of one /design page: it takes the page's requests and has them answered."""
+"""The connection of one /design page: reads the page's requests and sends the answers."""
 
 import asyncio
 from pathlib import PurePath
@@ -33,11 +33,11 @@ _ASKS_HZ, _ASKS_BURST = 50.0, 100
 
 
 class DesignPage:
-    """One page's connection.
+    """The connection of one page /design.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
-        host: where the page's student designs.
+        host: the folder or class for which the page works.
     """
 
     def __init__(self, websocket: WebSocket, host: Host) -> None:
@@ -47,7 +47,7 @@ class DesignPage:
         self._answers = Answers(self._viewer, lambda *_: None)
         self._studio = StudioDesk(host.studios, self._viewer.send_if_fast)
         self._learner: Learner | None = None
-        """None: the page was not let in yet."""
+        """Turns what the page does into evidence; None: the page was not let in yet."""
         self._comparing: set[asyncio.Task[None]] = set()
 
     async def serve(self) -> None:
@@ -80,10 +80,10 @@ class DesignPage:
         return True
 
     async def _enter(self, hello: requests.Hello) -> None:
-        """Let the page in if its page key, class code or token is right; else it may try again.
+        """Let the page in if its page key, class code or token is right.
 
         Raises:
-            UserError: if the page is not let in.
+            UserError: if the page is not let in; it may try again.
         """
         client = self._websocket.client
         entered = await self._host.enter(hello, client.host if client else "")
@@ -152,7 +152,10 @@ class DesignPage:
                 answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
 
     async def _trial(self, asked: requests.TrialAsk, learner: Learner) -> msgspec.Raw:
-        """Let the robot walk; keep what the trial shows as evidence, unless it is only watched."""
+        """Let the robot walk, and keep as evidence what the trial shows.
+
+        A trial of the coach's table, which the student only watches, is no evidence.
+        """
         reply, payload = await self._studio.trial(asked)
         if asked.watched:
             return msgspec.Raw(payload)
@@ -170,7 +173,7 @@ class DesignPage:
             self._host.learned(learner.student)
 
     async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:
-        """Repeat a trial with the sample gait; None if the sample does not fit the robot."""
+        """Repeat a trial with the sample gait; None if the robot can't walk with the sample."""
         table = (await asyncio.to_thread(self._host.sample)).table
         if table is None or asked.table is None or table.legs != asked.table.legs:
             return None
@@ -178,7 +181,7 @@ class DesignPage:
         return (await self._studio.trial(sample))[0]
 
     async def _share(self, asked: requests.TableAsk, learner: Learner) -> Any:
-        """Merge what the page did to the table; when this returns, it is on the disk."""
+        """Merge a page's change into the shared table; when this returns, it is on the disk."""
         update = TableUpdate(
             table=asked.table,
             epoch=asked.epoch,
@@ -194,7 +197,7 @@ class DesignPage:
         return {}
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
-        """Check a table, and take its files to a court.
+        """Check a table, and give its files to a court, to practise there.
 
         Returns:
             `url`: the address of the page at that court.
@@ -286,7 +289,7 @@ class DesignPage:
 
 
 def robot_with(asked: requests.SetRobotAsk) -> FileContent:
-    """Return a robot file with one number changed; may block.
+    """Return a robot file with one number changed; may wait for the disk.
 
     Raises:
         UserError: if the file can't be read, or has no place for the number.
@@ -298,11 +301,11 @@ def robot_with(asked: requests.SetRobotAsk) -> FileContent:
 
 
 def parsed(asked: requests.ParseAsk) -> Any:
-    """Read a file that was dropped on a page, or a whole pasted spreadsheet; may block.
+    """Read a file that was dropped on a page, or a whole pasted spreadsheet; may take long.
 
     Raises:
         FileRefused: with every mistake of a gait file.
-        UserError: if it is neither bytes nor text.
+        UserError: if the page sent neither bytes nor text.
     """
     data = asked.data.encode() if isinstance(asked.data, str) else asked.data
     if not isinstance(data, bytes):
@@ -314,7 +317,7 @@ def _must_allow(learner: Learner, size: str | None) -> None:
     """Check that the coach may search for a change of this size.
 
     Raises:
-        UserError: if the teacher has closed such searches.
+        UserError: if the teacher does not allow it.
     """
     if not learner.student.rules.allows(size):
         raise UserError(say("class.coach-closed"))
@@ -331,5 +334,5 @@ def _must_be_open(learner: Learner, phase: int) -> None:
 
 
 def _court(host: Host) -> str | None:
-    """Return where a page can take its table: to practice; None: nowhere."""
+    """Return the court to which a page can take its table: "practice"; None: there is none."""
     return None if host.playing is None else "practice"

@@ -1,4 +1,4 @@
-"""The host of one person who designs alone: it has the folder, the studio and the open pages."""
+"""The host of one person who designs alone: the person's folder, studio and open pages."""
 
 import asyncio
 import hmac
@@ -29,16 +29,16 @@ EVIDENCE_FILE = "lacoc-evidence.sqlite"
 """Name of the file in the folder that keeps the student's progress."""
 
 _LOOK_S = 1.0
-"""How often to look for changed files, and to send pages a sign of life [s]."""
+"""Time between two looks for changed files, and between two signs of life to pages [s]."""
 _SOON_S = 0.1
-"""How soon pages are told that a studio has come or gone [s]."""
+"""Time after which pages are told that a studio has come or gone [s]."""
 
 
 class Designer:
-    """The folder and the studio of a gateway for one person; a `Host`.
+    """The host of the pages of one person: a folder and a studio.
 
     Args:
-        folder: the files.
+        folder: the folder with the person's files.
         studios: the connection to the studio; this class starts and closes it.
         robot: the robot that pages begin with, as on the command line; None: the workshop's.
 
@@ -64,14 +64,14 @@ class Designer:
         self._robot_name = robot or WORKSHOPS_ROBOT
 
     async def enter(self, hello: requests.Hello, where: str) -> LetIn:
-        """Let a page in that shows the page key; see `Host.enter`."""
+        """Let in a page that shows the page key; see `Host.enter`."""
         key = hello.key.encode("utf-8", "surrogatepass")
         if not hmac.compare_digest(key, self.key.encode()):
             raise UserError(say("design.wrong-key"))
         return LetIn(self._student)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Tell a page what it shows first; see `Host.greet`."""
+        """Send a page the messages that it shows first; see `Host.greet`."""
         student.greet(viewer, lesson)
         viewer.send(self._folder_message(()))
         viewer.send(studio_message(self.studios))
@@ -82,20 +82,20 @@ class Designer:
         student.leave(viewer)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell all pages how far the student is; see `Host.learned`."""
+        """Tell all pages how far the student is in the phases; see `Host.learned`."""
         student.tell()
 
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
-        """Refuse: whoever has the page key shares the table without a group."""
+        """Refuse: there are no groups here, as everybody with the page key shares the table."""
         raise UserError(say("groups.not-here"))
 
     def sample(self) -> FileContent:
-        """Read the robot's sample postures from the disk; empty if the robot has no sample."""
+        """Read the robot's sample postures from its file; empty if the robot has no sample."""
         return sample_postures(self._robot_name)
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Watch the folder and the studio until the block ends, and tell pages what changes."""
+        """Until the block ends, watch the folder and the studio, and tell pages what changes."""
         self.studios.start()
         await self._student.diary.read()
         self._student.open_kept()
@@ -130,13 +130,19 @@ class Designer:
 
 
 def sample_postures(robot: str) -> FileContent:
-    """Read a robot's sample postures; empty if the robot has no sample. May block."""
+    """Read a robot's sample postures; empty if it has no sample. May wait for the disk."""
     postures = sample_gait_files(robot).postures
     return FileContent() if postures is None else read_file(postures.name, postures.data)
 
 
 def folder_message(path: str, folder: Folder | None, changed: tuple[str, ...] = ()) -> bytes:
-    """Return the message that says which files there are; without a folder there are none."""
+    """Return the message with the files of a folder; without a folder it lists no files.
+
+    Args:
+        path: path of the folder, for the page; "": there is no folder.
+        folder: the folder; None: there is no folder.
+        changed: names of the files that have changed.
+    """
     files = folder.files if folder is not None else ()
     return wire.map_message(
         MessageKind.FOLDER, {"folder": path, "files": files, "changed": changed}

@@ -25,14 +25,14 @@ class FileContent:
     table: FileTable | None = None
     robot: str | None = None
     notes: tuple[Phrase, ...] = ()
-    """Remarks on what is no mistake, but perhaps not intended."""
+    """Remarks on things that are no mistakes, but perhaps not intended."""
 
 
 def read_file(name: str, data: bytes) -> FileContent:
     """Read a gait file or a robot file.
 
-    The content, not the name, decides whether a gait file is a workbook or text, whether it has
-    postures or sequences, and for how many legs.
+    The content, not the name, decides whether a gait file is a workbook or text, whether it is a
+    file of postures (level A) or of locomotion (level B), and for how many legs.
 
     Raises:
         FileRefused: with every mistake of a gait file.
@@ -61,7 +61,7 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
 
     Raises:
         FileRefused: with every mistake of the table, or of the workbook to change.
-        UserError: if a file of this name can't have this content.
+        UserError: if a file with this suffix can't have this content.
     """
     if isinstance(content, str):
         if _suffix(name) != _ROBOT:

@@ -1,7 +1,7 @@
 """The gait and robot files of a folder: list them, read them, save them, see what changed.
 
-A file's version is a hash of its content. Whoever saves a file names the version that was read. So
-a change that was made meanwhile (in Excel, in another tab) is not overwritten without a question.
+A file's version is a hash of its content. A page that saves a file names the version that it has
+read. So a change that another program or page made meanwhile is not overwritten without a question.
 """
 
 import hashlib
@@ -51,20 +51,20 @@ class Read(msgspec.Struct, frozen=True, kw_only=True):
     version: str
     notes: tuple[Phrase, ...] = ()
     mistakes: tuple[Mistake, ...] = ()
-    """Why there is no table; only in a `Conflict`."""
+    """In a `Conflict`: why the file could not be read as a table."""
 
 
 class SavedFile(msgspec.Struct, frozen=True):
-    """The file was written."""
+    """The answer after a file was written."""
 
     version: str
 
 
 class Conflict(msgspec.Struct, frozen=True):
-    """Nothing was written, because the file has changed since it was read."""
+    """The answer after nothing was written, because the file has changed since it was read."""
 
     conflict: Read
-    """What the file has now."""
+    """The present content of the file."""
 
 
 class _KnownFile(NamedTuple):
@@ -74,7 +74,7 @@ class _KnownFile(NamedTuple):
 
 
 class Folder:
-    """The files of a folder; may be used from any thread.
+    """The gait and robot files of a folder; may be used from any thread.
 
     Args:
         path: the folder.
@@ -95,7 +95,10 @@ class Folder:
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Read the folder; return the names of files changed, new or gone since the last look."""
+        """Read the folder again.
+
+        Return the names of files that changed, came or went since before.
+        """
         with self._lock:
             self._look()
             changed, self._changed = self._changed, set()
@@ -170,7 +173,7 @@ class Folder:
             return None
 
     def _data(self, path: Path) -> bytes | None:
-        """Read a file; return None if there is none."""
+        """Read a file; return None if it does not exist."""
         try:
             with path.open("rb") as file:
                 return file.read(MAX_BYTES + 1)
@@ -220,7 +223,7 @@ def _as_read(name: str, data: bytes, read: FileContent) -> Read:
 
 
 def _conflicting(name: str, data: bytes | None) -> Read:
-    """Read a file that another program has changed; its mistakes are returned, not raised."""
+    """Read a file that another program has changed; return its mistakes instead of raising them."""
     if data is None:
         return Read(version=ABSENT)
     try:

@@ -1,4 +1,4 @@
-"""The host of a page of /design: a folder of one's own, or a class."""
+"""The host of a page of /design: the folder of one person, or a class."""
 
 from typing import NamedTuple, Protocol
 
@@ -14,7 +14,7 @@ from lacoc_shared.studio import TrialReply
 
 
 class Host(Protocol):
-    """A place where students design. Only `sample` may be called outside the event loop."""
+    """What a page of /design belongs to. Only `sample` may be called outside the event loop."""
 
     robot: SentFile | None
     """The robot file that pages begin with; None: the workshop's."""
@@ -22,54 +22,54 @@ class Host(Protocol):
     folder: Folder | None
     """The folder with the student's files; None: pages have no folder."""
     playing: Playing | None
-    """The way to a court; None: pages have none."""
+    """Takes tables to a court, to practise there; None: pages can't do this."""
 
     async def enter(self, hello: requests.Hello, where: str) -> "LetIn":
         """Let a page in.
 
         Args:
-            hello: what the page shows.
+            hello: the page key, token, or class code and name that the page shows.
             where: address of the page's machine.
 
         Raises:
-            UserError: if the page may not come in, or must show something else.
+            UserError: if the page may not come in, or must show something else first.
         """
 
     def leave(self, student: Student, viewer: Viewer) -> None:
         """Remove a page that has gone."""
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Send a page all that it needs when it has been let in.
+        """Send a page everything that it needs after it was let in.
 
         Args:
-            student: whose page it is.
+            student: the student whose page it is.
             viewer: the page.
             lesson: whether it is a page of the lesson of one leg.
         """
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell all who must know that a student did something.
+        """Tell all pages for which it matters that a student did something.
 
         Args:
             student: the student.
-            trial: the trial, if that is what the student did.
+            trial: the trial's reply, if the student let the robot walk.
         """
 
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
-        """Do what a student asks of the groups.
+        """Do what a student asks about groups, such as join one.
 
         Raises:
             UserError: if it can't be done, or there are no groups here.
         """
 
     def sample(self) -> FileContent:
-        """Read the robot's sample postures; empty if the robot has no sample. May block."""
+        """Read the robot's sample postures; empty if it has no sample. May wait for the disk."""
 
 
 class LetIn(NamedTuple):
     """A page that was let in."""
 
     student: Student
-    """Whose page it is."""
+    """The student whose page it is."""
     token: str | None = None
-    """Lets this browser in again; None: it needs none."""
+    """The token with which this browser may come in again; None: it needs no token."""

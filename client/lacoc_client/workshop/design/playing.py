@@ -1,4 +1,4 @@
-"""The way from a table on /design to a court: to practice."""
+"""Takes a table of /design to a court: to `lacoc practice`."""
 
 import threading
 from pathlib import Path
@@ -45,7 +45,7 @@ class Playing:
             self._folder.close()
 
     def _write(self, files: SeatFiles) -> list[Path]:
-        """Write the files; return their paths: of the robot, level A, level B."""
+        """Write the files; return the paths of the robot file, level A and level B."""
         paths = [self._folder.path / name for name in USUAL_NAMES]
         for path, file in zip(paths, files, strict=True):
             if file is None:

@@ -16,9 +16,9 @@ from lacoc_shared.studio import STUDIO_MAX_BYTES
 from lacoc_shared.words import say
 
 REQUEST_BYTES = STUDIO_MAX_BYTES
-"""Longest request [bytes] except for `parse`; a longer one is refused."""
+"""Longest request [bytes], except for `parse`; a longer request is refused."""
 PARSE_BYTES = MAX_BYTES + 4096
-"""Longest `parse` [bytes], which may have the largest workbook that is read."""
+"""Longest `parse` request [bytes]: it may contain the largest workbook that can be read."""
 MESSAGE_BYTES = 16 << 20
 """Longest message [bytes]; a longer one closes the connection."""
 
@@ -42,9 +42,10 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
     name: Name = ""
     """Nickname in the class."""
     token: Name = ""
-    """What the class gave this browser before."""
+    """The token that the class gave to this browser earlier."""
     lesson: bool = False
-    """Whether it is the page of the lesson of one leg, which works beside a page of /design."""
+    """Whether this is a page of the lesson of one leg; such a page works beside a page of
+    /design."""
 
 
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
@@ -94,15 +95,15 @@ class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
     """Change one number in the text of a robot file."""
 
     robot: SentFile | None = None
-    """None: the workshop's robot is the start."""
+    """The robot file to change; None: the workshop's robot."""
     entry: AnyEntry
     leg: Annotated[int, msgspec.Meta(ge=0, le=99)] = 0
-    """Which leg, for a number of one leg."""
+    """Index of the leg, for a number of one leg."""
     value: float
 
 
 class Foretold(msgspec.Struct, frozen=True, kw_only=True):
-    """A student's guess of what the next trial will show."""
+    """A guess of the student about the next trial."""
 
     about: Literal["pace", "way"]
     said: Pace | Way
@@ -119,40 +120,40 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
     seconds: float | None = None
     guesses: tuple[Foretold, ...] = ()
     watched: bool = False
-    """Whether the table is the coach's and is only watched; then the trial is no evidence."""
+    """Whether the student only watches a table of the coach; then the trial is no evidence."""
 
 
 class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
-    """Change the table that all its pages share."""
+    """Change the table that several pages share."""
 
     table: Name
-    """Which table; "": the student's own."""
+    """Id of the table; "": the student's own table."""
     epoch: Name
-    """Which document of it."""
+    """The epoch of the table for which the change was made."""
     update: Annotated[bytes, msgspec.Meta(max_length=UPDATE_BYTES)]
-    """What has changed, as Yjs writes it."""
+    """The changes, in the format of Yjs."""
     cells: Annotated[tuple[Name, ...], msgspec.Meta(max_length=_MOST_CELLS)] = ()
     """Names of the cells into which somebody typed."""
     seen: Annotated[int, msgspec.Meta(ge=0)] = 0
-    """Number of the newest update that the page had taken in."""
+    """Number of the newest update of the table that the page had received."""
     begins: bool = False
-    """Whether it has what the page has put into an empty table."""
+    """Whether the change contains the first content that the page has put into an empty table."""
 
 
 class PlaceAsk(Ask, frozen=True, kw_only=True, tag="place"):
-    """Tell the other pages of the table where this one is."""
+    """Tell the other pages of the table which cell this page is at."""
 
     row: Annotated[int, msgspec.Meta(ge=-1, lt=MAX_KEYS * MAX_POSTURES_PER_KEY)]
     col: Annotated[int, msgspec.Meta(ge=-1, lt=100)]
     typing: Annotated[str, msgspec.Meta(max_length=100)] | None = None
-    """What is being typed there."""
+    """The text that is being typed in this cell; None: nothing is being typed."""
 
 
 class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
     """Tell the gateway what the student did to the table, as evidence for the phases."""
 
     before: FileTable
-    """The table without this edit. What others did meanwhile is in both tables."""
+    """The table without this edit. Changes that other people made meanwhile are in both tables."""
     table: FileTable
     robot: SentFile | None = None
     sequences: Sequences | None = None
@@ -194,17 +195,17 @@ class AnswerAsk(Ask, frozen=True, kw_only=True, tag="answer"):
 
     phase: _PhaseNumber
     question: Name
-    """Its name: an answer that comes too late, to another question, is refused."""
+    """Name of the question: a late answer to another question is refused."""
     choice: _Small
 
 
 class LessonAsk(Ask, frozen=True, kw_only=True, tag="step"):
-    """Come to a step of the lesson of one leg, or answer a question of it."""
+    """Report that the student reached a step of the lesson of one leg, or answered a question."""
 
     step: Annotated[int, msgspec.Meta(ge=1, le=LESSON_STEPS)]
     robot: Annotated[str, msgspec.Meta(max_length=40)]
     question: _Small | None = None
-    """Index of the question; None: the student came to the step."""
+    """Index of the question that was answered; None: the student has reached the step."""
     of: _Small = 0
     """Number of questions of the step."""
     choice: _Small = 0
@@ -241,7 +242,7 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
     """Ask the coach which numbers matter, and for better numbers."""
 
     job: _Job
-    """Name that the page chooses for the search; progress and `cancel` have it too."""
+    """Name that the page chooses for the search; reports on the search and `cancel` use it too."""
     table: FileTable | None = None
     robot: SentFile | None = None
     sequences: Sequences | None = None
@@ -256,7 +257,7 @@ class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
     """Ask the coach for a map of gaits: one for each speed and arousal."""
 
     job: _Job
-    """As in `CoachAsk`."""
+    """Name of the search; see `CoachAsk`."""
     table: FileTable | None = None
     robot: SentFile | None = None
     sequences: Sequences | None = None
@@ -269,17 +270,18 @@ class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
     """Ask the coach for six gaits that look different."""
 
     job: _Job
-    """As in `CoachAsk`."""
+    """Name of the search; see `CoachAsk`."""
     table: FileTable | None = None
     robot: SentFile | None = None
     sequences: Sequences | None = None
     key: int | None = None
     keep: tuple[tuple[int, ...], ...] = ()
-    """Tables of one or two gaits to breed from; empty: from `table`."""
+    """Tables of one or two gaits from which the new gaits are made; empty: they are made from
+    `table`."""
     before: tuple[tuple[int, ...], ...] = ()
-    """Tables of gaits that were shown before: new ones differ from them."""
+    """Tables of gaits that were shown before: the new gaits must look different."""
     round: int = 0
-    """How many rounds were before."""
+    """How many rounds of six gaits were shown before."""
     seed: int = 0
 
 
@@ -328,13 +330,13 @@ def read(data: bytes) -> Asked:
     """Decode a request of a page.
 
     Raises:
-        Unreadable: if the bytes are no known request, or too many for their kind of request.
+        Unreadable: if the bytes are not a known request, or too long for their kind of request.
     """
     return read_with(_asked, data)
 
 
 def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
-    """Decode a request with this decoder; raise the same error as `read`."""
+    """Decode a request with this decoder; raises the same error as `read`."""
     try:
         if len(data) > REQUEST_BYTES:
             most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES

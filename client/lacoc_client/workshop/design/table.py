@@ -1,4 +1,4 @@
-"""A gait as a table of the page: rows of angles in degrees, sorted by key."""
+"""A gait as a table of the page /design: rows of angles in degrees, sorted by key."""
 
 from itertools import groupby
 from typing import Annotated, Literal
@@ -15,8 +15,8 @@ from lacoc_shared.words import say
 _Digit = Annotated[int, msgspec.Meta(ge=0, lt=MAX_KEYS)]
 _Index = Annotated[int, msgspec.Meta(ge=0, lt=MAX_POSTURES_PER_KEY)]
 _MOST_LEGS = 32
-"""Most legs of a table that a page sends. The time to check a table grows with this number, so
-without a limit one small message could keep a whole class waiting for minutes."""
+"""Most legs of a table that a page may send. The time to check a table grows with the number of
+legs, so without a limit one small message could make a whole class wait for minutes."""
 
 
 class FileRow(msgspec.Struct, frozen=True, kw_only=True):
@@ -26,7 +26,7 @@ class FileRow(msgspec.Struct, frozen=True, kw_only=True):
     posture: _Index = 0
     """Index in the key's sequence; 0 in a table of postures."""
     angles_deg: Annotated[tuple[float, ...], msgspec.Meta(max_length=_MOST_LEGS * JOINTS_PER_LEG)]
-    """(joints,) by joint id."""
+    """Angle of each joint [deg], by joint id; (joints,)."""
 
 
 class FileTable(msgspec.Struct, frozen=True, kw_only=True):
@@ -38,7 +38,7 @@ class FileTable(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def file_name(self) -> str:
-        """The usual name of a text file with such a table, such as "Loco-data.txt" (rules 2)."""
+        """The usual name of a text file of this kind of table, as "Loco-data.txt" (rules 2)."""
         return GAIT_NAMES[Level.POSTURE if self.kind == "postures" else Level.LOCOMOTION]
 
 
@@ -64,7 +64,7 @@ def gait_of(table: FileTable, name: str) -> PostureTable | LocomotionTable:
         name: name of the table's file, for messages.
 
     Raises:
-        FileRefused: with every mistake; rows and columns are counted as in the file.
+        FileRefused: with every mistake; its row and column are counted as in a file.
         UserError: if a key of a locomotion table is missing.
     """
     cells = _posture_cells(table) if table.kind == "postures" else _locomotion_cells(table)

@@ -14,9 +14,10 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C41434F, 1
-"""Numbers in the file's header that mark a class: "LACO" in ASCII, and the version of `_TABLES`."""
+"""Numbers in the header of the SQLite file by which it is recognised as a class: "LACO" in ASCII,
+and the version of `_TABLES`."""
 _BESIDE = ("", "-wal", "-shm", "-journal")
-"""Endings of the names of the files that SQLite keeps for one database."""
+"""Endings of the names of further files that SQLite makes beside a database."""
 _TABLES = (
     """
     CREATE TABLE evidence (
@@ -47,7 +48,7 @@ class Kept(NamedTuple):
     """A piece of evidence in the file."""
 
     number: int
-    """Counts all evidence of the class in the order of writing, from 1."""
+    """Number of this evidence among all of the class, in the order of writing, from 1."""
     student: str
     at_s: float
     """Time when it happened, in seconds since 1970 (UTC)."""
@@ -55,21 +56,22 @@ class Kept(NamedTuple):
 
 
 class Document(NamedTuple):
-    """The newest content of something that is kept under a name; in SQL a row of `tables`."""
+    """The newest content of a document, such as a draft; in SQL a row of `tables`."""
 
     student: str
-    """Whose it is; "" stands for the whole class, or for whoever designs alone."""
+    """The student whose document it is; "": it is of the whole class, or of a person who designs
+    alone."""
     name: str
-    """What it is, such as "draft"."""
+    """Name of the document, such as "draft"."""
     version: str
     at_s: float
     content: bytes
 
 
 class ClassFile:
-    """The open file of a class; no other program can open it too. For one thread at a time.
+    """The open file of a class; no other program can open it meanwhile. For one thread at a time.
 
-    When a method that writes returns, its data are on the disk.
+    A method that writes returns when its data are on the disk.
 
     Args:
         path: the file; it is made if there is none.
@@ -145,7 +147,7 @@ class ClassFile:
         return [Document(*row) for row in rows]
 
     def forget(self, student: str) -> None:
-        """Delete all that is kept of a student; votes have no names, so they stay."""
+        """Delete everything that is kept of a student, except votes, because they have no names."""
         with self._db:
             self._db.execute("DELETE FROM evidence WHERE student = ?", (student,))
             self._db.execute("DELETE FROM tables WHERE student = ?", (student,))
@@ -156,7 +158,7 @@ class ClassFile:
         self._db.close()
 
     def problem(self, error: sqlite3.Error) -> Damaged | UserError:
-        """Return the exception that an error of SQLite stands for."""
+        """Turn an error of SQLite into the exception to raise, which has a sentence for people."""
         return database.problem(self._path, error)
 
     def _write_documents(self, documents: Iterable[Document]) -> None:
@@ -194,7 +196,7 @@ def set_aside(path: Path) -> Path:
 
 
 def forget(path: Path) -> list[Path]:
-    """Delete the file of a class, its damaged files, and what SQLite keeps beside them.
+    """Delete the file of a class, its damaged files that were set aside, and SQLite's own files.
 
     Returns:
         The deleted files.
@@ -231,5 +233,5 @@ def _escaped(name: str) -> str:
 
 
 def _row(evidence: Evidence) -> tuple[str, str]:
-    """Return kind and body of evidence, as they stand in the file's columns."""
+    """Return the kind and the body of evidence, for the columns of the file."""
     return kind_of(evidence), to_json(evidence).decode()

@@ -11,7 +11,8 @@ from lacoc_shared.words import Phrase, say
 _UPRIGHT = 0.8
 """A robot has tipped over if its `upright` is below this (docs/studio.md 3)."""
 _BELLY = 0.05
-"""A robot does not act on its feet if its body rests on the floor for a larger share of time."""
+"""A robot does not walk on its feet if its body rests on the floor for a larger share of the time
+than this."""
 
 
 def foot_guess(one: Evidence) -> bool | None:
@@ -20,7 +21,7 @@ def foot_guess(one: Evidence) -> bool | None:
 
 
 def differs_from_sample(one: Evidence) -> Iterator[tuple[None, str]]:
-    """Yield each way in which a walk differs from the sample's walk."""
+    """Yield each visible difference of a walk from the walk with the sample gait."""
     if isinstance(one, Compared) and one.against == SAMPLE:
         for difference in one.differs:
             yield None, difference
@@ -45,8 +46,8 @@ def acts(*bounds: Bound, lacks: Phrase) -> Predicate:
 
     Args:
         *bounds: further limits that the same trial must keep.
-        lacks: sentence for whatever is missing; a robot that tips over, and physics that stops,
-            have sentences of their own.
+        lacks: sentence that says what is missing in all cases except two: for a robot that tips
+            over and for physics that stops there are other sentences.
     """
     level_b = Bound(lambda facts: float(facts.keys[-1].startswith("B")), lambda _: lacks, least=1)
     belly = Bound(lambda facts: facts.belly_share, lambda _: lacks, most=_BELLY)
@@ -59,10 +60,10 @@ def within(
     least: float = -math.inf,
     most: float = math.inf,
 ) -> Bound:
-    """Make the limit that a number of a trial is from `least` to `most`.
+    """Make the limit that a number of a trial is between `least` and `most`.
 
     Args:
-        number: takes a trial's facts; returns the number.
+        number: returns the number from the facts of a trial.
         lacks: sentence that says what is missing if the number lies outside.
         least: smallest number allowed.
         most: largest number allowed.

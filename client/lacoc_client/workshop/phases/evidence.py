@@ -1,4 +1,4 @@
-"""The kinds of evidence of what students do, from which the phases decide what is done.
+"""The kinds of evidence that students produce; the phases decide from it which tasks are done.
 
 Evidence is only added, never changed.
 """
@@ -18,8 +18,8 @@ LESSON_STEPS = 8
 """Number of steps of the lesson of one leg; the last one has no question."""
 
 By = Literal["hand", "tool", "paste", "coach", "lesson"]
-"""How cells were changed. A tool of the page, such as mirror or copy, makes cells from others; the
-lesson of one leg gives the three numbers of a leg."""
+"""How cells were changed: typed, or made in another way. A tool of the page, such as mirror or
+copy, makes cells from others; the lesson of one leg gives the three numbers of a leg."""
 Rows = Mapping[tuple[int, int], Sequence[float]]
 """A table: (key, index in the key's sequence) -> (joints,) angles [deg], by joint id."""
 
@@ -32,25 +32,25 @@ class _EvidenceKind(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind")
 
 
 class JoinedClass(_EvidenceKind, frozen=True, kw_only=True, tag="joined"):
-    """The student came into the class."""
+    """The student entered the class."""
 
 
 class WentToPhase(_EvidenceKind, frozen=True, kw_only=True, tag="moved"):
     """The student went to a phase, forward or back."""
 
     phase: int
-    """From 0 to 6."""
+    """Number of the phase, from 0 to 6."""
 
 
 class TookStep(_EvidenceKind, frozen=True, kw_only=True, tag="step"):
-    """The student came to a step of the lesson of one leg, or answered a question of it."""
+    """The student reached a step of the lesson of one leg, or answered a question of it."""
 
     step: int
-    """From 1 to 8 (`LESSON_STEPS`)."""
+    """Number of the step, from 1 to 8 (`LESSON_STEPS`)."""
     robot: _Word
     """Name of the robot whose leg was shown."""
     question: int = -1
-    """Index of the question in the step; -1: the student came to the step."""
+    """Index of the question in the step; -1: the student reached the step."""
     of: int = 0
     """Number of questions of the step."""
     choice: int = -1
@@ -59,7 +59,7 @@ class TookStep(_EvidenceKind, frozen=True, kw_only=True, tag="step"):
 
 
 class LegEdit(msgspec.Struct, frozen=True, array_like=True):
-    """An edit of one leg in one posture."""
+    """An edit of one leg in one row of the table."""
 
     key: int
     posture: int
@@ -78,13 +78,13 @@ class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
     """The student changed cells of the table."""
 
     version: _Word
-    """The version that the edit made."""
+    """Name of the version of the table after the edit."""
     by: By
     legs: tuple[LegEdit, ...]
 
 
 class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
-    """The student guessed what would happen, and then saw what happened."""
+    """The student guessed the effect of a change, and then saw the effect."""
 
     about: Literal["foot", "pace", "way"]
     """What was guessed: where a foot goes (`facts.FootWay`), whether the robot becomes faster
@@ -94,9 +94,9 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
     was: tuple[_Word, ...]
     """All right answers."""
     leg: int = -1
-    """If the guess was about a foot, and one number moved it: the index of the leg."""
+    """Index of the leg; only if the guess was about a foot that was moved by one number."""
     level: int = -1
-    """Level of the joint that moved it: 0 is root, 1 is 1st, 2 is 2nd."""
+    """Level of the joint with this number: 0 is root, 1 is 1st, 2 is 2nd."""
     before_deg: float = 0.0
     """Angle of the joint before the change."""
     after_deg: float = 0.0
@@ -118,7 +118,7 @@ class TriedNumber(msgspec.Struct, frozen=True, array_like=True):
     """Index in the key's sequence; 0 in a table of postures."""
     leg: int
     level: int
-    """0 is root, 1 is 1st, 2 is 2nd."""
+    """Level of the joint: 0 is root, 1 is 1st, 2 is 2nd."""
     angle_deg: float
     start_deg: float
     """Angle of the joint in the robot's start posture."""
@@ -130,23 +130,27 @@ class Tried(_EvidenceKind, frozen=True, kw_only=True, tag="tried"):
     version: _Word
     facts: TrialFacts
     rows: tuple[int, ...] = ()
-    """The rows of the measured key in order: their digits, or 1, 2 ... in a table of level B."""
+    """The rows that the measured key used, in order: their digits; or 1, 2 ... in a table of level
+    B."""
     numbers: tuple[TriedNumber, ...] = ()
-    """The numbers of all rows of the pressed keys that differ from the robot's start posture."""
+    """All numbers in the rows of the pressed keys that differ from the robot's start posture."""
 
 
 class CheckedGait(_EvidenceKind, frozen=True, kw_only=True, tag="checked"):
-    """A gait was checked, as `lacoc gait check` does; checks that find mistakes are not kept."""
+    """The student checked a gait, as `lacoc gait check` does.
+
+    Checks that find mistakes are not kept.
+    """
 
     version: _Word
     keys: int
     """Number of keys of level B that the gait has."""
     mistakes: int
-    """Number of mistakes that were found: 0 in what the page keeps."""
+    """Number of mistakes that were found; 0 in evidence that is kept."""
 
 
 class Compared(_EvidenceKind, frozen=True, kw_only=True, tag="compared"):
-    """Trials of two versions of the table were compared."""
+    """The student compared trials of two versions of the table."""
 
     version: _Word
     against: _Word
@@ -162,10 +166,10 @@ class Named(_EvidenceKind, frozen=True, kw_only=True, tag="named"):
 
 
 class Voted(_EvidenceKind, frozen=True, kw_only=True, tag="voted"):
-    """The student voted whether A or B fits a word better; the choice is not kept here."""
+    """The student voted whether A or B fits a word better. The choice is not in the evidence."""
 
     poll: _Name
-    """The word."""
+    """Name of the poll: the word."""
 
 
 class Coached(_EvidenceKind, frozen=True, kw_only=True, tag="coached"):
@@ -180,7 +184,7 @@ class Answered(_EvidenceKind, frozen=True, kw_only=True, tag="answered"):
     """The student answered the question that a phase asks before it is done."""
 
     phase: int
-    """From 0 to 6."""
+    """Number of the phase, from 0 to 6."""
     question: _Word
     """Name of the question, such as "margin"."""
     said: int

@@ -20,7 +20,7 @@ _LONGEST = 60  # characters of a name: systems allow 255 bytes, and a character 
 _DEVICES = {"con", "prn", "aux", "nul"} | {
     f"{device}{number}" for device in ("com", "lpt") for number in range(1, 10)
 }
-"""Names that Windows keeps for its devices."""
+"""File names that Windows reserves for devices."""
 
 
 def evidence_csv(evidence: Iterable[Kept]) -> bytes:
@@ -34,7 +34,7 @@ def evidence_csv(evidence: Iterable[Kept]) -> bytes:
 
 
 def tables_zip(tables: Iterable[Document]) -> bytes:
-    """Put the newest tables into a zip archive with one folder for each student."""
+    """Put the newest tables into a zip archive with one folder for each student or group."""
     data = io.BytesIO()
     folders: dict[str, str] = {}
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:

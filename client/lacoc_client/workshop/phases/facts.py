@@ -15,7 +15,7 @@ from lacoc_shared.seat import BEAT_S
 from lacoc_shared.studio import TrialReply
 
 TRIPOD_MARGIN_M = 0.010
-"""Smallest support margin with which a robot stands firmly [m]."""
+"""A robot stands firmly if its support margin is at least this [m]."""
 
 Pace = Literal["faster", "slower", "same"]
 Way = Literal["left", "right", "straight"]
@@ -26,24 +26,25 @@ _SEAM = "explain.seam"
 SAME_MM_S, SAME_SHARE = 3.0, 0.05
 """Two speeds count as the same if they differ by less than 3 mm/s, or by less than 5 %."""
 STRAIGHT_DEG_S = 3.0
-"""A robot that turns at most this fast goes straight (docs/studio.md 3)."""
+"""A robot that turns at most this fast counts as going straight [deg/s] (docs/studio.md 3)."""
 _STILL_M = 0.001  # a foot that moves less than this stays where it is
 _ALSO = 0.6  # a direction is a right answer if the motion along it is this part of the largest
 _KEY = re.compile(r"([AaBb]?)([0-9])(?::[0-9.]+)?", re.ASCII)
 
 
 class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
-    """What a trial showed in its measured time; docs/studio.md 2 and 7 define the numbers."""
+    """The facts of a trial, from its measured time; docs/studio.md 2 and 7 define the numbers."""
 
     keys: tuple[str, ...]
     """Level and digit of each pressed key in order, such as "A1". The last key was measured."""
     postures: int
-    """Number of postures of the measured key that were the drive's target."""
+    """How many postures of the measured key the drive has moved to."""
     cycles: int
-    """Whole cycles that were measured."""
+    """Number of whole cycles that were measured."""
     cycle_s: float | None
     forward_mm: float
-    """Distance forward; forward is where the robot faced when the measurement began."""
+    """Distance that the robot went forward: in the direction that it faced when the measurement
+    began."""
     left_mm: float
     """Distance to the left of this direction."""
     speed_mm_s: float
@@ -55,20 +56,21 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
     duty: tuple[float, ...]
     """For each leg, the share of time in which its foot is down."""
     tripod_s: float
-    """Longest time on the same half of the feet (`feet_of_half`), with a support margin of at least
-    `TRIPOD_MARGIN_M`."""
+    """Longest time in which the robot stood on the same half of its feet (`feet_of_half`), with a
+    support margin of at least `TRIPOD_MARGIN_M` [s]."""
     same_feet_share: float
-    """Largest share of time on the same half of the feet, with any margin."""
+    """Largest share of time in which the robot stood on the same half of its feet, with any
+    margin."""
     seam_deg: float
-    """Largest jump of a joint from the last posture back to the first; 0: no joint jumps."""
+    """Largest jump of a joint from the last posture back to the first [deg]; 0: no joint jumps."""
     stopped: bool
     """Whether physics stopped before the end of the trial."""
     stood: tuple[int, ...] = ()
-    """Indices of the legs of the half that was down for `same_feet_share`."""
+    """Indices of the legs of that half of the feet of `same_feet_share`."""
 
 
 class _FactFigures(msgspec.Struct, frozen=True, kw_only=True):
-    """The figures of a trial that the facts are made of."""
+    """The figures of a trial from which the facts are computed."""
 
     seconds: float
     cycles: int
@@ -129,12 +131,12 @@ def trial_facts(reply: TrialReply, keys: str = "") -> TrialFacts:
 
 
 def feet_of_half(legs: int) -> int:
-    """Return how many feet half of the legs are: three of six legs, and never fewer than three."""
+    """Return how many feet count as half of the legs: three of six, and never fewer than three."""
     return max(3, legs // 2)
 
 
 def pace(before: TrialFacts, after: TrialFacts) -> Pace:
-    """Return whether the robot became faster forward from one trial to the next."""
+    """Return whether the robot walked forward faster, slower or as fast as in the trial before."""
     by = after.speed_mm_s - before.speed_mm_s
     if abs(by) < max(SAME_MM_S, SAME_SHARE * abs(before.speed_mm_s)):
         return "same"
@@ -142,7 +144,7 @@ def pace(before: TrialFacts, after: TrialFacts) -> Pace:
 
 
 def way(facts: TrialFacts) -> Way:
-    """Return to which side a robot turns."""
+    """Return to which side a robot turned in a trial, or that it went straight."""
     if abs(facts.drift_deg_s) <= STRAIGHT_DEG_S:
         return "straight"
     return "left" if facts.drift_deg_s > 0 else "right"
@@ -216,14 +218,17 @@ def _counts(feet: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
 
 
 def _longest_run(values: npt.NDArray[Any]) -> int:
-    """Return the length of the longest run of one value; zeros do not count."""
+    """Return the length of the longest run of equal values; runs of zeros do not count."""
     ends = np.flatnonzero(np.diff(values, prepend=-1, append=-1))
     runs = [int(b - a) for a, b in pairwise(ends) if values[a]]
     return max(runs, default=0)
 
 
 def _most_common(values: npt.NDArray[Any]) -> tuple[int, int]:
-    """Return the most common value, and how often it occurs; zeros do not count."""
+    """Return the most common value and how often it occurs; zeros do not count.
+
+    (0, 0): only zeros.
+    """
     found, counts = np.unique(values[values != 0], return_counts=True)
     if not len(found):
         return 0, 0
@@ -239,5 +244,5 @@ def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:
 
 
 def _short(value: float) -> float:
-    """Round a number, so that evidence stays small."""
+    """Round a number to three decimals, so that evidence stays small."""
     return round(float(value), 3)

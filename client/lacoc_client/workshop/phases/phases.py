@@ -1,4 +1,4 @@
-"""The phases of workshop 3-1 and 4-2, as tasks with evidence (docs/studio.md 7)."""
+"""The phases of workshop 3-1 and 4-2, with their tasks and evidence (docs/studio.md 7)."""
 
 from lacoc_client.workshop.phases.conditions import (
     IS_UPRIGHT,
@@ -96,7 +96,7 @@ THREE_LEGS = WorkshopPhase(
 
 
 def _farther(found_mm: float, least_mm: float) -> Phrase:
-    """Say that the robot must move farther forward."""
+    """Return the sentence that the robot must move farther forward."""
     if round(found_mm) < 0:
         return say("phases.went-back", found_mm=-found_mm, least_mm=least_mm)
     return say("phases.farther", found_mm=found_mm, least_mm=least_mm)

@@ -1,7 +1,7 @@
-"""Rules that look at a student's evidence and say how much of something is done.
+"""Rules that compute from a student's evidence how much of a task is done.
 
-Small rules can be put together to larger ones. More evidence never makes less done: a rule that was
-met once stays met. A test checks this for all phases.
+Small rules can be combined into larger ones. More evidence never lowers the result: a rule that was
+once met stays met. A test checks this for all phases.
 """
 
 import math
@@ -15,17 +15,18 @@ from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_shared.words import Phrase
 
 _NEARLY = 0.99
-"""Largest share of a rule that is not met."""
+"""Largest share of a rule that is not met yet."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How far a student is with one rule."""
+    """How far one rule is met."""
 
     share: float
     """Part that is done, from 0 to 1; 1: the rule is met."""
     missing: tuple[Phrase, ...]
-    """Sentences that say what is still missing, the most useful first; empty: the rule is met."""
+    """Sentences that say what is still missing, the most useful first; empty: nothing, the rule is
+    met."""
 
     @property
     def met(self) -> bool:
@@ -37,25 +38,29 @@ MET = Outcome(1.0, ())
 
 
 class Predicate(Protocol):
-    """A rule that evidence meets, or does not meet yet."""
+    """A rule about evidence."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return how far the rule is met; `evidence` is in the order in which it came."""
+        """Return how far the rule is met.
+
+        Args:
+            evidence: all evidence of the student, in order.
+        """
 
 
 Lacks = Callable[[int], Phrase]
-"""Takes a number of missing things; returns a sentence that says so."""
+"""Takes how many things are missing; returns the sentence that says so."""
 
 
 @dataclass(frozen=True)
 class Times:
-    """A rule that something must happen a number of times."""
+    """The rule that something must happen a number of times."""
 
     test: Callable[[Evidence], bool]
-    """Says whether a piece of evidence counts."""
+    """Returns whether a piece of evidence counts."""
     times: int
     lacks: Lacks
-    """Takes how many times are missing."""
+    """Takes how many times are still missing; returns the sentence that says so."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Count the evidence that passes the test."""
@@ -69,13 +74,13 @@ def once(test: Callable[[Evidence], bool], lacks: Phrase) -> Times:
 
 @dataclass(frozen=True)
 class Different:
-    """A rule that a group must have `count` different things, such as six postures of a leg."""
+    """The rule that one group must have `count` different things, such as six postures of a leg."""
 
     things: Callable[[Evidence], Iterable[tuple[Hashable, Hashable]]]
-    """Takes a piece of evidence; returns its pairs of a group and a thing."""
+    """Takes a piece of evidence; returns a pair of a group and a thing for each thing in it."""
     count: int
     lacks: Lacks
-    """Takes how many things are missing in the group that has most."""
+    """Takes how many things are missing in the fullest group; returns the sentence that says so."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Count the different things of each group; return the outcome of the largest group."""
@@ -88,14 +93,15 @@ class Different:
 
 @dataclass(frozen=True)
 class LastOf:
-    """A rule that some `last` answers in a row must have at least `right` right ones."""
+    """The rule that among `last` answers in a row at least `right` must be right."""
 
     answer: Callable[[Evidence], bool | None]
-    """Says whether an answer was right; None: this evidence is no answer."""
+    """Returns whether an answer was right; None: this evidence is no answer."""
     right: int
     last: int
     lacks: Lacks
-    """Takes how many right answers the best row still lacks."""
+    """Takes how many right answers the best `last` answers in a row still lack; returns the
+    sentence that says so."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Find the `last` answers in a row of which the most are right; return their outcome."""
@@ -106,10 +112,11 @@ class LastOf:
 
 @dataclass(frozen=True)
 class Bound:
-    """A limit for one number of a trial: it must be from `least` to `most`."""
+    """A limit: one number of a trial must be from `least` to `most`."""
 
     number: Callable[[TrialFacts], float | None]
-    """Returns the number; None, NaN or infinity: the trial has none, so the limit is not kept."""
+    """Returns the number of a trial. None, NaN or infinity: the trial has no such number and does
+    not keep the limit."""
     lacks: Callable[[float], Phrase]
     """Takes the trial's number (0 if it has none); returns a sentence that says what is missing."""
     least: float = -math.inf
@@ -133,21 +140,24 @@ class Bound:
 
 @dataclass(frozen=True)
 class TriedWhere:
-    """A rule that one trial must keep all limits."""
+    """The rule that one trial must keep all limits."""
 
     bounds: tuple[Bound, ...]
     none: Phrase
-    """What is missing while there is no trial."""
+    """Sentence that says what is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the trial with the largest share; of equal ones, of the last."""
+        """Return the outcome of the trial that keeps most of the limits.
+
+        Of equal ones, of the last.
+        """
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [every([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]
         return max(best, key=_share, default=Outcome(0.0, (self.none,)))
 
 
 class All:
-    """A rule that several rules must be met.
+    """The rule that several rules must be met.
 
     Args:
         *parts: the rules.
@@ -157,7 +167,7 @@ class All:
         self.parts = parts
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each rule; the share is the mean of their shares."""
+        """Look at each rule; the share is the mean of the rules' shares."""
         return every([part.look(evidence) for part in self.parts])
 
 
@@ -166,12 +176,12 @@ def _share(outcome: Outcome) -> float:
 
 
 def counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
-    """Return the outcome of a rule that asks for `wanted` things."""
+    """Return the outcome of a rule for which `wanted` things must be found."""
     return MET if found >= wanted else Outcome(found / wanted, (lacks(wanted - found),))
 
 
 def every(outcomes: Sequence[Outcome]) -> Outcome:
-    """Return the outcome of a rule that asks for all of several rules."""
+    """Return the outcome of a rule for which several rules must be met."""
     missing = tuple(dict.fromkeys(phrase for outcome in outcomes for phrase in outcome.missing))
     if not missing:
         return MET

@@ -17,8 +17,8 @@ from lacoc_client.workshop.phases.proof.phase import WorkshopPhase
 from lacoc_client.workshop.phases.proof.questions import PhaseQuestion
 
 State = Literal["open", "met", "skipped"]
-"""A phase is "skipped" if the student went on without doing its task. The student can come back at
-any time, and the phase is "met" as soon as the evidence shows it."""
+"""State of a phase. It is "skipped" if the student went on without doing its task; the student can
+come back at any time. It is "met" as soon as the evidence shows that its task is done."""
 
 
 @dataclass(frozen=True)
@@ -26,21 +26,22 @@ class StudentProgress:
     """How far a student is in the phases."""
 
     phase: int
-    """Number of the phase that the student is at."""
+    """Number of the student's present phase."""
     states: tuple[State, ...]
     """State of each phase, from phase 0."""
     outcomes: tuple[Outcome, ...]
-    """For each phase, the share that is done and what is missing."""
+    """For each phase, the share of it that is done and what is missing."""
     questions: tuple[PhaseQuestion | None, ...]
-    """For each phase, the question that waits for an answer."""
+    """For each phase, the question that the student must answer now; None: there is no such
+    question."""
     hand_up: bool
     """Whether the student asks for help now."""
     coached: bool
-    """Whether the student has ever taken over changes of the coach."""
+    """Whether the student has ever taken over changes that the coach found."""
     lesson_step: int
-    """The step of the lesson of one leg to which the student came last; 0: none yet."""
+    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
     seen: int
-    """Number of pieces of evidence from which this was computed."""
+    """Number of pieces of evidence from which this progress was computed."""
 
 
 def progress(
@@ -51,7 +52,7 @@ def progress(
     Args:
         evidence: all evidence of the student, in order.
         before: the result for an earlier part of the same evidence. Tasks that were met then are
-            not looked at again, because a task that was met stays met.
+            not computed again, because a task that was met stays met.
     """
     visited = [one.phase for one in evidence if isinstance(one, WentToPhase)]
     visited = [number for number in visited if 0 <= number < len(PHASES)]
@@ -82,7 +83,7 @@ def progress(
 
 
 def _may_change(phase: WorkshopPhase, before: StudentProgress, new: Sequence[Evidence]) -> bool:
-    """Return whether new evidence may change a phase: a page may send much that does not."""
+    """Return whether new evidence may change the outcome of a phase; much evidence can't."""
     is_met = before.outcomes[phase.number].met  # then it stays met
     return not is_met and phase.may_change(before.questions[phase.number], new)
 

@@ -22,7 +22,7 @@ _T = TypeVar("_T")
 
 
 class _StoreJob(Generic[_T]):
-    """A piece of work for the store's thread."""
+    """A job for the store's thread."""
 
     def __init__(self, work: Callable[[ClassFile], _T], writes: bool) -> None:
         self.work = work
@@ -34,9 +34,9 @@ class ClassStore:
     """The evidence and documents of a class, kept on disk; may be used from any thread.
 
     A thread of its own works on the file, so that no event loop waits for the disk. The methods
-    return futures, which are done when their data are on the disk (`asyncio.wrap_future` makes an
-    event loop wait for one). If the process is killed, evidence whose future is done is not lost.
-    A document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
+    that write return futures, which are done when the data are on the disk (await one with
+    `asyncio.wrap_future`). If the process is killed, evidence whose future is done is not lost. A
+    document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
 
     A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
     futures fail with a `UserError`, and documents wait until there is room.
@@ -59,7 +59,7 @@ class ClassStore:
             self._file = self._fresh()
         self._documents = {(one.student, one.name): one for one in self._file.documents()}
         self._waiting: set[tuple[str, str]] = set()
-        """Student and name of each document that is not on disk yet."""
+        """Student and name of each document that is not on the disk yet."""
         self._jobs: SimpleQueue[_StoreJob[Any] | None] = SimpleQueue()
         self._closed = False
         self._lock = threading.Lock()
@@ -69,14 +69,14 @@ class ClassStore:
 
     @property
     def trouble(self) -> Phrase | None:
-        """A sentence that says what is wrong with the file; None: nothing.
+        """A sentence that says what is wrong with the file; None: nothing is wrong.
 
         It names a full disk until a write succeeds, and a damaged file until the store is closed.
         """
         return self._no_room or self._damage
 
     def add(self, student: str, evidence: Evidence, at_s: float) -> "Future[int]":
-        """Keep evidence; write with it the student's documents that still wait.
+        """Write evidence, together with the student's documents that are not on the disk yet.
 
         Args:
             student: name of the student.
@@ -108,7 +108,7 @@ class ClassStore:
         return self._do(lambda file: file.evidence(student, after))
 
     def keep(self, document: Document) -> None:
-        """Keep the newest content of a document; it is written within `DOCUMENT_S`.
+        """Take the newest content of a document; it is written to the disk within `DOCUMENT_S`.
 
         Raises:
             UserError: if the store is closed.
@@ -123,12 +123,12 @@ class ClassStore:
             self._waiting.add((document.student, document.name))
 
     def write(self, document: Document) -> "Future[None]":
-        """Keep a document as `keep` does, with the same errors, but write it at once."""
+        """Take a document as `keep` does, with the same errors, but write it at once."""
         self.keep(document)  # so that it is written later if the disk is full now
         return self._do(lambda file: file.write_documents([document]), writes=True)
 
     def forget(self, student: str) -> "Future[None]":
-        """Delete all that is kept of a student."""
+        """Delete everything that is kept of a student."""
 
         def work(file: ClassFile) -> None:
             file.forget(student)  # first: if this fails, everything is as before
@@ -232,7 +232,10 @@ class ClassStore:
             ]
 
     def _written(self, documents: Iterable[Document]) -> None:
-        """Note that documents are on the disk; a newer one that came meanwhile still waits."""
+        """Note that documents are on the disk.
+
+        If a newer content came meanwhile, it still waits.
+        """
         with self._lock:
             for document in documents:
                 key = document.student, document.name

@@ -1,1 +1,1 @@
-"""Tables that several pages edit: `document` merges edits, `shared_table` passes them on."""
+"""Tables that several pages edit: `document` merges edits, `shared_table` sends them on."""

@@ -1,7 +1,7 @@
-"""The document of a shared table: it merges updates of pages, and believes only tables.
+"""The document of a shared table: it merges updates of pages, and checks that it stays a table.
 
-Pages merge in the same way with Yjs. An update that would make anything else than a table is
-taken back before anybody else sees it. One that lacks its predecessors is not taken at all.
+Pages merge in the same way, with Yjs. An update after which the document would not be a table is
+undone before another page sees it. An update whose predecessors are missing here is refused.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,23 +17,23 @@ from lacoc_shared.words import say
 STATE_BYTES = 512 << 10
 """Longest state of a document [bytes]; an update that makes it longer is refused."""
 COMPACT_BYTES = 48 << 10
-"""A state that is longer by so much than that of the same table without a past is replaced by
-it [bytes]."""
+"""If a state is longer by this than the state of the same table without a past, the document
+without a past takes its place [bytes]."""
 
 
 class TableDocument:
-    """The merged edits of all pages of one table; no clock, network or disk.
+    """The merged edits of all pages of one table. Pure: no clock, network or disk.
 
     Args:
         state: a state to begin with; b"": an empty table.
 
     Raises:
-        UserError: if the state is none of a table.
+        UserError: if the state is not that of a table.
     """
 
     def __init__(self, state: bytes = b"") -> None:
         self.state = b""
-        """The whole document, as a page can merge it."""
+        """The whole document in the form with which a page can merge its edits."""
         self._entries: dict[str, Entry] = {}
         self._changes: set[str] = set()
         self._load(b"")
@@ -44,7 +44,7 @@ class TableDocument:
 
     @property
     def entries(self) -> Mapping[str, Entry]:
-        """All entries by name; they stay as they are when another update is merged."""
+        """All entries by name, in a mapping that later merges do not change."""
         return self._entries
 
     def merge(self, update: bytes, may_write: Callable[[int], bool] = lambda _: True) -> bool:
@@ -52,11 +52,13 @@ class TableDocument:
 
         Args:
             update: the update, as Yjs writes it.
-            may_write: whether the page may bring edits under a number of a page.
+            may_write: returns whether the page may bring edits under a page number (Yjs's client
+                id).
 
         Raises:
-            UserError: if the update can't be read, makes no table, follows one that is not here,
-                or writes under another page's number; then nothing has changed.
+            UserError: if the update can't be read, would make something else than a table, needs
+                edits that are not here, or writes under another page's number; then nothing has
+                changed.
         """
         known = read_known(self._document.get_state())
         try:
@@ -86,15 +88,18 @@ class TableDocument:
 
     @property
     def is_long(self) -> bool:
-        """Whether the past of the table makes it worth while to begin a document without it."""
+        """Whether the past is so long that a document without it should take its place."""
         return len(self.state) > self._compact_bytes
 
     def fresh(self) -> "TableDocument":
-        """Return a document with the same entries and no past, which merges with no page's."""
+        """Return a document with the same entries and no past.
+
+        It can't be merged with a page's edits.
+        """
         return document_of(self._entries)
 
     def _check(self) -> None:
-        """Take in what has changed.
+        """Read the changed entries from the document and check them.
 
         Raises:
             UserError: if the document is no table, or too large.

@@ -1,4 +1,4 @@
-"""The newest table of somebody, with all that is needed to let a robot walk with it."""
+"""The newest table of a student, with everything that is needed to let a robot walk with it."""
 
 from collections.abc import Mapping
 from typing import Literal
@@ -22,12 +22,12 @@ class _RobotEntry(msgspec.Struct, frozen=True):
 
 
 class Draft(msgspec.Struct, frozen=True, kw_only=True):
-    """A table whose cells all have angles, its keys and its robot."""
+    """A table without a bad cell, with its keys and its robot."""
 
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None
     robot: SentFile | None = None
-    """None: the workshop's."""
+    """The robot file; None: the workshop's robot."""
 
     def files(self) -> SeatFiles:
         """Return the files of a match: robot, postures and locomotion.
@@ -49,7 +49,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
-    """Return the table with its keys and robot; None while a cell has no angle."""
+    """Return the table of a document with its keys and robot; None while a cell has no angle."""
     table = _table(entries)
     if table is None:
         return None
@@ -82,7 +82,10 @@ def _table(entries: Mapping[str, Entry]) -> FileTable | None:
 
 
 def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
-    """Number the rows, without the gaps where keys were removed on one page, added on another."""
+    """Number keys and postures anew, without gaps.
+
+    There are gaps if one page has removed keys while another one added some.
+    """
     keys = sorted({row.key for row in rows})
     counts = dict.fromkeys(keys, 0)
     numbered = []
@@ -97,9 +100,9 @@ def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
 def _sequences(
     entries: Mapping[str, Entry], table: FileTable
 ) -> tuple[tuple[int, ...], ...] | None:
-    """Return the digits of each key of level B; None if the table itself has them.
+    """Return the digits of each key of level B; None if the table is one of sequences itself.
 
-    A key whose postures are not all there gets the first one: each key needs postures.
+    A key that uses a posture that is missing gets the first posture, because each key needs one.
     """
     keys = entries.get("keys")
     if table.kind == "locomotion" or not isinstance(keys, str):

@@ -9,9 +9,10 @@
     robot        the robot's file (JSON); "": the workshop's robot
     file         which file has the table (JSON); only pages read it
 
-Names of cells begin with their shape: what somebody typed into another table can't get into this
-one. A removed row keeps its cells, so that it can come back whole. A row keeps its rank while rows
-come and go beside it, so what is typed into it at the same time stays in it.
+The name of a cell begins with the shape, so a number that somebody typed into a table of another
+shape can't get into this one. A removed row keeps its cells, so that it can come back complete. A
+row keeps its rank while rows beside it are added or removed, so a number that is typed at the same
+time stays in its row.
 """
 
 import math
@@ -29,16 +30,16 @@ ENTRIES_MOST = 8_000
 TEXT_MOST = 200
 """Longest text of a cell or of a proposal [characters]."""
 LONG_MOST = 40_000
-"""Longest text of the keys, of a robot file with its name, or of what is said of a file
-[characters]."""
+"""Longest text of the keys, of a robot file with its name, or of the entry `file` [characters]."""
 
 SHAPE = re.compile(r"([pl])([1-9]|[12][0-9]|3[0-2])", re.ASCII)
-"""A shape: its kind and number of legs."""
+"""Matches a shape: kind and number of legs."""
 PLACE = re.compile(
     rf"({SHAPE.pattern})/([0-9])\.((?:[0-9]|[1-9][0-9])(?:_[0-9]{{1,12}})?)(?:/([0-9]|[1-9][0-9])(\?)?)?",
     re.ASCII,
 )
-"""A row or a cell: shape, kind, legs, key, rank, joint, and "?" for a proposal."""
+"""Matches the name of a row or a cell: shape, kind, legs, key, rank, joint, and "?" for a
+proposal."""
 _LONG = ("keys", "robot", "file")
 
 
@@ -68,7 +69,7 @@ def is_entry(name: object, value: object) -> bool:
 
 
 def without_proposals(entries: Mapping[str, Entry], by: str) -> dict[str, Entry]:
-    """Return entries without what somebody has proposed."""
+    """Return entries without the proposals of one person."""
     return {
         name: value
         for name, value in entries.items()

@@ -1,4 +1,4 @@
-"""Finds the table in what a class file has of a student; an old draft becomes a table."""
+"""Finds a student's table among the documents of a class file, also one of an earlier version."""
 
 from collections.abc import Iterable
 
@@ -12,7 +12,7 @@ from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 
 TABLE = "table"
-"""Name under which a student's table is kept."""
+"""Name of the document with a student's table."""
 _DRAFT = "draft"
 
 
@@ -26,9 +26,9 @@ class _OldDraft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def kept_table(documents: Iterable[Document]) -> Document | None:
-    """Return the table in the documents of a student; None: there is none that can be read.
+    """Return the table in the documents of a student; None: there is no table that can be read.
 
-    A draft of an earlier version becomes a table.
+    A draft that an earlier version of the program wrote is turned into a table.
     """
     kept = {one.name: one for one in documents}
     if TABLE in kept or _DRAFT not in kept:

@@ -1,4 +1,4 @@
-"""A table that several pages have open: passes edits on, keeps them, and says who is where."""
+"""A table that several pages have open: merges and sends edits, keeps them, tells who is where."""
 
 import asyncio
 import time
@@ -19,20 +19,21 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
 UPDATES_HZ, UPDATES_BURST = 100.0, 200
-"""Updates of one table [1/s], however many pages send them."""
+"""How many updates of one table pass a second, and at once, from all pages together."""
 _COST_ENTRIES = 500
-"""An update counts once more for each so many entries of the table: it costs more time."""
+"""An update of a large table takes longer: it counts once more for each so many entries of the
+table."""
 _REFUSED_COST = 10
-"""An update that is refused counts so many times: the document is read again."""
+"""An update that is refused counts so many times, because the document must be read again."""
 _PEOPLE_S = 0.05
-"""Pages are told at most so often where the others are [s]."""
+"""Least time between two messages about where the others are [s]."""
 
 _FORGET_AFTER = 20_000
-"""After so many cells it is no longer remembered who typed into which."""
+"""The memory of who typed into which cell is cleared when it has more cells than this."""
 
 
 class TableUpdate(msgspec.Struct, frozen=True, kw_only=True):
-    """What a page has done to a table."""
+    """A page's change of a table."""
 
     table: str
     epoch: str
@@ -40,32 +41,34 @@ class TableUpdate(msgspec.Struct, frozen=True, kw_only=True):
     cells: tuple[str, ...] = ()
     """Names of the cells into which somebody typed."""
     seen: int = 0
-    """Number of the newest update that the page had taken in."""
+    """Number of the newest update of the table that the page had received."""
     begins: bool = False
-    """Whether it has what the page has put into an empty table."""
+    """Whether the change contains the first content that the page has put into an empty table."""
 
 
 class Person(msgspec.Struct, kw_only=True):
-    """A page at the table."""
+    """A page that has the table open, as the other pages see it."""
 
     id: int
-    """Counts the pages of the table, from 1; a place that is free is taken again."""
+    """Number of the page among those of the table, from 1; numbers of pages that have gone are used
+    again."""
     name: str
-    """Nickname; "": whoever designs alone."""
+    """Nickname; "": a person who designs alone."""
     row: int = -1
     col: int = -1
     typing: str | None = None
-    """What is being typed; None: nothing is."""
+    """The text that is being typed; None: nothing is being typed."""
 
 
 class SharedTable:
     """A table that several pages edit at once; used from the event loop only.
 
     Args:
-        name: tells it from other tables; "": the table of a student or of a folder.
+        name: id of the table, different from those of other tables; "": the table of a student or
+            of a folder.
         keep: writes a state to the disk, with the name of the epoch. When it returns, the state is
-            there, or the student is told elsewhere why not.
-        state: a state of an earlier run, with its epoch.
+            on the disk, or the student is told in another way why it is not.
+        state: the state that an earlier run kept, with its epoch.
     """
 
     def __init__(
@@ -77,27 +80,28 @@ class SharedTable:
     ) -> None:
         self.name = name
         self.people: dict[Viewer, Person] = {}
-        """The pages that have the table open."""
+        """The pages that have the table open, with what the others see of them."""
         self._keep = keep
         self._allowance = Allowance(UPDATES_HZ, UPDATES_BURST)
         self._writing: asyncio.Task[None] | None = None
         self._telling: asyncio.TimerHandle | None = None
         self._told_s = 0.0
         self._draft: Draft | None = None
-        """The newest draft that was asked for, or could not be made later."""
+        """The newest complete table: from before a change after which a table may be incomplete, or
+        from when it was last asked for."""
         self._begin(TableDocument(state), epoch or new_token())
         self.is_touched = bool(state)
-        """Whether anybody has changed anything; else the table is not kept."""
+        """Whether anybody has ever changed the table; if not, it is not kept."""
         # A page that comes back after a restart has seen smaller numbers.
         self._seq = self._written = int(time.time() * 1000)
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table whose cells all had angles; None: there was none."""
+        """The newest table without a bad cell; None: there was none."""
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
-        """Return what a page needs to begin."""
+        """Return everything that a page needs to open the table."""
         return {
             "table": self.name,
             "epoch": self._epoch,
@@ -107,14 +111,14 @@ class SharedTable:
         }
 
     def add(self, viewer: Viewer, name: str) -> None:
-        """Take in a page that has the table open now."""
+        """Add a page that has opened the table."""
         taken = {person.id for person in self.people.values()}
         free = next(number for number in range(1, len(taken) + 2) if number not in taken)
         self.people[viewer] = Person(id=free, name=name)
         self._tell_people()
 
     def show(self, viewer: Viewer, name: str) -> None:
-        """Take in a page that has had another table open."""
+        """Add a page that had another table open, and send it this one."""
         viewer.send(self._message({"state": self._document.state}))
         self.add(viewer, name)
 
@@ -124,23 +128,26 @@ class SharedTable:
             self._tell_people()
 
     def end(self) -> None:
-        """Forget a table that nobody has changed: the last page of its student has gone."""
+        """Drop a table that nobody has changed, because the last page of its student has gone."""
         if not self.is_touched:
             self._begin(TableDocument(), new_token())
 
     def move(self, viewer: Viewer, row: int, col: int, typing: str | None) -> None:
-        """Tell the others where a page is, and what is being typed there."""
+        """Tell the other pages at which cell a page is, and what is being typed there."""
         person = self.people.get(viewer)
         if person is not None and (person.row, person.col, person.typing) != (row, col, typing):
             person.row, person.col, person.typing = row, col, typing
             self._tell_people()
 
     async def take(self, viewer: Viewer, told: TableUpdate) -> dict[str, Any]:
-        """Merge an update of a page, and pass it on; when this returns, it is on the disk.
+        """Merge an update of a page, and send it to the other pages.
+
+        When this returns, it is on the disk.
 
         Raises:
-            UserError: if the page has another table or an older document, or if it would be no
-                table any more. The page then takes what `opened` returns.
+            UserError: if the update is for another table or an older document, or if the document
+                would not be a table any more. The page then opens the table again with what
+                `opened` returns.
         """
         if viewer not in self.people or (told.table, told.epoch) != (self.name, self._epoch):
             raise UserError(say("tables.older"))
@@ -171,7 +178,10 @@ class SharedTable:
         return {"seq": seq}
 
     def replace(self, document: TableDocument) -> None:
-        """Go on with another document; all pages take it, and add what they had not sent."""
+        """Replace the document.
+
+        All pages take the new one, and add edits that they had not sent.
+        """
         self._begin(document, new_token())
         self._seq += 1
         message = self._message({"state": self._document.state})
@@ -179,11 +189,11 @@ class SharedTable:
             viewer.send(message)
 
     def fresh(self) -> TableDocument:
-        """Return a document with the same table, for somebody else."""
+        """Return a document with the same table and no past, for another shared table."""
         return self._document.fresh()
 
     async def forget(self, name: str) -> None:
-        """Cut off the past of the table, and remove what somebody has proposed."""
+        """Remove the past of the table, and the proposals of one student."""
         self.replace(document_of(without_proposals(self._document.entries, name)))
         await self.keep_now()
 
@@ -199,14 +209,15 @@ class SharedTable:
         self._draft = draft_of(document.entries) or self._draft
         self._is_draft_old = False
         self._writers: dict[int, Viewer] = {}
-        """Whose the numbers of pages are in this document."""
+        """The page that writes under each page number in this document."""
         self._typed: dict[str, tuple[int, Viewer]] = {}
-        """For each cell the number of the last update with it, and whose it was."""
+        """For each cell the number of the last update in which it was typed, and the page."""
 
     def _is_of(self, writer: int, viewer: Viewer) -> bool:
-        """Return whether a page may write under a number of a page.
+        """Return whether a page may write under a page number (Yjs's client id).
 
-        If two wrote under the same one, the edits of the second would count as here already.
+        If two pages wrote under the same number, the document would take the second page's edits
+        for edits that it has already.
         """
         owner = self._writers.setdefault(writer, viewer)
         if owner is not viewer and owner not in self.people:  # it has connected again
@@ -220,10 +231,10 @@ class SharedTable:
         return self._draft
 
     def _keep_draft(self, before: Mapping[str, Entry]) -> None:
-        """Note that the table has changed.
+        """Note that the table is about to differ from the draft.
 
-        Before a change of more than numbers, the table as it was becomes the draft: it may be the
-        last one that is whole.
+        Before a change of anything else than numbers, the table becomes the draft: perhaps it is
+        the last complete one.
         """
         after = self._document.entries
         changed = (name for name in {*before, *after} if before.get(name) is not after.get(name))
@@ -232,7 +243,7 @@ class SharedTable:
         self._is_draft_old = True
 
     def _find_clashes(self, viewer: Viewer, told: TableUpdate) -> None:
-        """Tell two pages that typed into the same cell without having seen each other's number."""
+        """Tell two pages if both typed into the same cell before they saw each other's number."""
         clashes: dict[Viewer, list[str]] = {}
         for cell in told.cells:
             seq, other = self._typed.get(cell, (0, viewer))
@@ -257,7 +268,7 @@ class SharedTable:
         return wire.map_message(MessageKind.TABLE, {**head, **body})
 
     def _tell_people(self) -> None:
-        """Tell all pages who is where: at once, or soon if they have just been told."""
+        """Tell all pages who is at which cell: at once, or a moment later if it was just told."""
         if not self.people or self._telling is not None:
             return
         loop = asyncio.get_running_loop()

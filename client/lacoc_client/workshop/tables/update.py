@@ -1,8 +1,8 @@
-"""Reads an update of a shared table, as Yjs writes it, before the library gets it.
+"""Reads an update of a shared table, as Yjs writes it, before the library may read it.
 
-Yjs has updates for texts, lists and nested documents too. A table needs few of them, and the
-library believes the rest: a list in a list in a list ends the process, and an update whose
-predecessor is missing takes cells away. So only what a table needs is let through.
+Yjs has updates for texts, lists and nested documents too. A table needs only few kinds, and the
+library checks the others too little: deeply nested lists end the process, and an update whose
+predecessor is missing deletes cells. So only the kinds that a table needs are let through.
 """
 
 from collections.abc import Mapping
@@ -12,40 +12,40 @@ ROOT = "table"
 """Name of the map in which a table's entries are."""
 
 _CLOCK_MOST = 1 << 31
-"""End of the edits of one page; the library counts them in 32 bits."""
+"""Most edits of one page; the library counts them in 32 bits."""
 _CLIENT_MOST = 1 << 53
 _ORIGIN, _RIGHT_ORIGIN, _NAMED = 0x80, 0x40, 0x20
 _GC, _DELETED, _ANY, _SKIP = 0, 1, 8, 10
 _LENGTHS = {127: 0, 126: 0, 124: 4, 123: 8, 122: 8, 121: 0, 120: 0}
-"""How many bytes follow the sign of a value, for signs of a fixed length."""
+"""How many bytes follow the type byte of a value, for types of a fixed length."""
 _INTEGER, _TEXT = 125, 119
 
 
 class Unfit(ValueError):
-    """An update that no page of a table writes."""
+    """An update that no page with a table could have written."""
 
 
 class ItemSpan(NamedTuple):
-    """Edits of one page, counted from 0 on: those from `start` up to, but without, `end`."""
+    """Edits of one page, counted from 0: from `start` up to, but not including, `end`."""
 
     client: int
-    """The number that the page has drawn for itself."""
+    """The page number, which the page has drawn at random (Yjs's client id)."""
     start: int
     end: int
 
 
 class Update(NamedTuple):
-    """What an update brings, and what it is made for."""
+    """The edits of an update, and the edits that it needs."""
 
     edits: tuple[ItemSpan, ...]
     needs: tuple[ItemSpan, ...]
-    """Edits that it names, such as those that it deletes."""
+    """Edits that the update refers to, such as those that it deletes."""
 
     def fits(self, known: Mapping[int, int]) -> bool:
-        """Return whether a document that has these edits can take the whole update in.
+        """Return whether the whole update can be merged into a document that has these edits.
 
         Args:
-            known: number of edits of each page.
+            known: number of edits of each page in the document.
         """
         ends = dict(known)
         for client, start, end in sorted(self.edits):
@@ -56,7 +56,7 @@ class Update(NamedTuple):
 
     @property
     def writers(self) -> set[int]:
-        """The numbers of the pages whose edits it brings."""
+        """The numbers of the pages whose edits are in the update."""
         return {client for client, _, _ in self.edits}
 
 
@@ -64,7 +64,7 @@ def read_update(data: bytes) -> Update:
     """Read an update.
 
     Raises:
-        Unfit: if no page of a table writes such an update.
+        Unfit: if no page with a table could have written it.
     """
     try:
         reader = _Reader(data)
@@ -77,7 +77,7 @@ def read_update(data: bytes) -> Update:
 
 
 def read_known(state_vector: bytes) -> dict[int, int]:
-    """Read how many edits of each page a document has."""
+    """Read from a state vector how many edits of each page a document has."""
     reader = _Reader(state_vector)
     return {reader.number(): reader.number() for _ in range(reader.number())}
 
@@ -88,7 +88,10 @@ class _Reader:
         self.at = 0
 
     def number(self) -> int:
-        """Read seven bits of each byte; the eighth says that another one follows."""
+        """Read a number: seven bits from each byte.
+
+        The eighth bit says whether another byte follows.
+        """
         value = shift = 0
         while True:
             byte = self._data[self.at]
@@ -117,7 +120,11 @@ class _Reader:
         return Update(tuple(edits), tuple(needs))
 
     def _edit(self, needs: list[ItemSpan]) -> tuple[int, bool]:
-        """Read an edit; return how many it counts as, and whether it is there."""
+        """Read an edit; return how many edits it counts as, and whether it contains them.
+
+        Args:
+            needs: list to which edits are added that this one refers to.
+        """
         info = self._data[self.at]
         self.at += 1
         kind = info & 31

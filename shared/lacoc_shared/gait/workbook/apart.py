@@ -1,8 +1,8 @@
 """Reads workbooks in a process of its own, with limits of memory and time.
 
-Workbooks come from strangers. Whatever one of them does to the program that reads it, a gateway, an
-office or a class goes on with its own work, and the file is refused. The process starts with the
-first workbook, and ends with the program that it reads for.
+Workbooks come from strangers. If one of them crashes or blocks the process that reads it, the file
+is refused, and the gateway, office or class goes on. The process starts with the first workbook,
+and ends with the program for which it reads.
 """
 
 import atexit
@@ -21,15 +21,15 @@ from lacoc_shared.words import say
 
 _MEMORY_BYTES = 512 << 20
 _PROCESSOR_S = 3
-"""Longest time of the processor for a workbook [s]; a usual one takes 0.1."""
+"""Longest time of the processor for a workbook [s]; a usual workbook takes 0.1."""
 _WALL_S = 60.0
 """Longest time for a workbook [s], also on a busy machine."""
 _LENGTH_BYTES = 4
 
 _Asked = tuple[str, bytes]
-"""The name of a file, and the file."""
+"""Message to the process: the name of a file, and its content."""
 _Answer = WorkbookSheet | list[Mistake]
-"""A sheet, or why the file is refused."""
+"""Message from the process: a sheet, or why the file is refused."""
 
 
 def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
@@ -51,7 +51,7 @@ def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
 
 
 class _ReaderProcess:
-    """The process that reads, one workbook at a time; it is started again after a costly one."""
+    """The process that reads one workbook at a time; it is started again after an expensive one."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -60,7 +60,7 @@ class _ReaderProcess:
         atexit.register(self.close)
 
     def ask(self, asked: _Asked) -> _Answer | None:
-        """Let the process read a workbook; return None if this ended the process."""
+        """Let the process read a workbook; return None if the process has ended meanwhile."""
         with self._lock:
             process = self._started()
             assert process.stdin is not None

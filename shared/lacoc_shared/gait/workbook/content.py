@@ -1,8 +1,9 @@
-"""What the sheet of a Loco-data workbook says; openpyxl reads it.
+"""Reads the content of the sheet in a Loco-data workbook, with openpyxl.
 
-A workbook is a zip of XML files. Much of it is said once and used often: a text, a formula, a
-format. So a small file can need endless memory or time. What is known to do so is counted before
-openpyxl reads the file; for all else the process has limits (`workbook.apart`).
+A workbook is a zip of XML files. It stores texts, formulas and formats once, and cells refer to
+them many times. So a small file can need endless memory or time. The known ways to do this are
+counted before openpyxl reads the file; against all others the process has limits
+(`workbook.apart`).
 """
 
 import io
@@ -29,40 +30,40 @@ _MAX_UNPACKED_BYTES = 8 * MAX_BYTES  # a sheet of angles needs a hundredth of it
 _MAX_PARTS = 200  # files in the zip; a workbook has a dozen
 _MAX_ELEMENTS = 50_000  # XML elements in all files together; a table has two thousand
 _COSTS = {"xf": 10, "numFmt": 10, "sheet": 1000, "definedName": 10}
-"""Elements that openpyxl compares with one another, and as how many they count."""
+"""Elements that openpyxl compares with one another, and the number as which each counts."""
 _MAX_ATTRIBUTE = 8192  # characters; Excel writes formats of at most 255
 _MAX_FORMULAS = 250_000  # characters of all cells' formulas; our own mirror sheet has 15,000
 _MAX_TEXT = 200  # characters of a cell; a message shows fewer, and no angle has so many
 _MAX_ROWS, _MAX_COLUMNS = 1000, 100  # the rest is not read; a table has 14 rows, 25 columns
 _STRICT = re.compile(rb"http://purl\.oclc\.org/ooxml/(\w+)/")
-"""Namespaces of the kind "Strict Open XML" (ISO 29500); openpyxl knows those before ISO only."""
+"""Namespaces of the kind "Strict Open XML" (ISO 29500); openpyxl can only read the older ones."""
 _OTHERS = {
     "content.xml": say("gait.opendocument"),
     "word/document.xml": say("gait.word-document"),
     "ppt/presentation.xml": say("gait.presentation"),
     "xl/workbook.bin": say("gait.binary-workbook"),
 }
-"""A file in the zip that identifies another kind of document -> the name of that kind."""
+"""The kind of document that a file of this name in the zip shows."""
 _WANTED = say("gait.workbook")
 
 
 class Odd(StrEnum):
-    """What is odd about a cell."""
+    """Oddities of a cell."""
 
     UNCALCULATED = "uncalculated"
-    """It has a formula without a stored value."""
+    """The cell has a formula without a stored value."""
     DATE = "date"
-    """It is shown as a date or a time."""
+    """The cell is shown as a date or a time."""
     PERCENT = "percent"
-    """It is shown as a percentage."""
+    """The cell is shown as a percentage."""
 
 
 class WorkbookSheet(msgspec.Struct, frozen=True):
-    """The cells of a sheet as text, as far as they are read."""
+    """The cells of a sheet as text; only those that are read."""
 
     title: str
     rows: list[list[str]]
-    """Row 1 is the first."""
+    """The rows by number; the first row is 1."""
     odd: list[tuple[int, int, Odd]]
     """Row and column of each odd cell, counted from 1."""
 
@@ -137,7 +138,7 @@ def _harmless(data: bytes, name: str) -> bytes:
 
 
 def _transitional(content: dict[str, bytes]) -> bytes:
-    """Return a workbook with the namespaces from before ISO 29500 in place of its strict ones."""
+    """Return a workbook with the usual namespaces in place of the strict ones of ISO 29500."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
         for name, part in content.items():
@@ -148,7 +149,7 @@ def _transitional(content: dict[str, bytes]) -> bytes:
 
 
 class _TooMuchError(Exception):
-    """The XML is not harmless; `found` says what is too large or forbidden in it."""
+    """A part of the workbook is too large or forbidden; `found` says which."""
 
     def __init__(self, found: Phrase) -> None:
         super().__init__()
@@ -156,20 +157,21 @@ class _TooMuchError(Exception):
 
 
 class _Counter:
-    """Counts what a workbook makes openpyxl do: elements, attributes, and formulas of cells."""
+    """Counts the work that a workbook makes for openpyxl: elements, attributes and formulas."""
 
     def __init__(self) -> None:
         self._elements = _MAX_ELEMENTS
         self._formulas = _MAX_FORMULAS
         self._shared: dict[str, int] = {}
-        """Length of each shared formula of the part, by its number."""
+        """Length of each shared formula in this part, by the formula's number."""
         self._formula: str | None = None
-        """Number of the shared formula that is being read; "": another formula; None: none."""
+        """Number of the shared formula that is being read; "": a formula that is not shared; None:
+        no formula."""
         self._length = 0
-        """Characters of the formula so far."""
+        """Number of characters of the formula so far."""
 
     def look_at(self, part: bytes) -> None:
-        """Count one file; a file that is not valid XML is read up to the error.
+        """Count one XML file of the workbook; if it is not valid XML, up to the error.
 
         Raises:
             _TooMuchError: if there is too much of something, or entities are defined.
@@ -213,7 +215,7 @@ class _Counter:
 
 
 def _sheet(data: bytes, name: str) -> WorkbookSheet:
-    """Read the cells: their values, and where a value is missing, whether there is a formula."""
+    """Read the cells: their values; if a value is missing, whether there is a formula."""
     import openpyxl  # only the process that reads needs it
 
     books = [
@@ -248,7 +250,10 @@ def _sheet(data: bytes, name: str) -> WorkbookSheet:
 
 
 def _title(titles: list[str], name: str) -> str:
-    """Return the title of the sheet to read; spaces, widths and cases of letters do not matter."""
+    """Return the title of the sheet to read.
+
+    Spaces, full-width letters and capitals make no difference.
+    """
     plain = {"".join(narrow(title).split()).casefold(): title for title in reversed(titles)}
     wanted = INPUT_SHEET if len(titles) > 1 else MIRROR_SHEET
     for one in (wanted, INPUT_SHEET):

@@ -34,7 +34,7 @@ def read_gait_file(
 
     Args:
         path: the file.
-        legs: the robot that it must fit; see `text.read_gait`.
+        legs: the robot that the gait must fit; see `text.read_gait`.
         range_deg: range of the angles; see `text.read_gait`.
         notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
@@ -75,7 +75,7 @@ def read_workbook(
     Args:
         data: the .xlsx file, at most 1 MiB. If "Loco-data" is the only sheet, it is read.
         name: the file's name, for error messages.
-        legs: the robot that it must fit; see `text.read_gait`.
+        legs: the robot that the gait must fit; see `text.read_gait`.
         range_deg: range of the angles; see `text.read_gait`.
         notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
@@ -140,7 +140,7 @@ def _cell_name(title: str, row: int, column: int) -> str:
 
 
 def _at_cell(mistake: Mistake, title: str, odd: Mapping[tuple[int, int], Odd]) -> Mistake:
-    """Name the cell of a mistake, and say what is odd about it."""
+    """Add to a mistake the name of its cell, and what is odd about the cell."""
     if mistake.row is None or mistake.column is None:
         return msgspec.structs.replace(mistake, field=title)
     found = mistake.found

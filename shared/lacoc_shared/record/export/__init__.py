@@ -1,1 +1,1 @@
-"""Exports of a record for other programs."""
+"""Exports of a record for other programs: tables, JSON and a 3D view."""

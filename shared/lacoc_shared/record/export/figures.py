@@ -66,11 +66,11 @@ def _made() -> dict[str, type[Message]]:
 
 _KINDS = _made()
 MATCH, ROBOT = _KINDS["Match"], _KINDS["Robot"]
-"""Kinds of the messages."""
+"""The classes of the two kinds of messages."""
 
 
 def topics(seats: Sequence[str]) -> dict[str, type[Message]]:
-    """Return the topics of a match with these seats, with the kind of each one's messages."""
+    """Return the topics of a match with these seats, with the message class of each topic."""
     return {"/match": MATCH} | {f"/robot/{seat}": ROBOT for seat in seats}
 
 
@@ -79,8 +79,8 @@ def figures(frame: Frame, sheet: Sheet, time: Timestamp) -> Iterator[tuple[str, 
 
     Args:
         frame: the frame.
-        sheet: the sheet that holds for it.
-        time: when it was.
+        sheet: the sheet that is valid for the frame.
+        time: the time of the frame.
     """
     clock_s = frame.clock_ticks * BEAT_S
     left_s = max(0.0, sheet.duration_s - clock_s) if sheet.duration_s else 0.0

@@ -1,10 +1,10 @@
-"""Export a record as an MCAP that Foxglove, Lichtblick and Rerun draw, 25 frames a second.
+"""Exports a record as an MCAP file that Foxglove, Lichtblick and Rerun draw, 25 frames a second.
 
-Topics: /tf (poses of the robots' parts), /scene (shapes; again when the scene changes),
-/board (all markers as they look now; at each change), /events, and numbers to plot: /match (phase,
-clock) and /robot/SEAT (score, keys, path, joint angles). Each message of /scene and
-/board is complete, so a viewer may jump to any time. The messages are Foxglove's own
-schemas in protobuf, because Rerun reads transforms in no other encoding.
+Topics: /tf (poses of the robots' parts); /scene (shapes; sent again when the scene changes); /board
+(all markers as they look now; sent at each change); /events; and numbers to plot: /match (phase,
+clock) and /robot/SEAT (score, keys, path, joint angles). Each message of /scene and /board is
+complete, so a viewer may jump to any time. The messages are Foxglove's own schemas in protobuf,
+because Rerun reads transforms in no other encoding.
 """
 
 from collections.abc import Iterator, Sequence
@@ -54,10 +54,10 @@ _TOPICS: dict[str, type[Message]] = {
     "/events": Log,
 }
 _EVERY = 2
-"""Step between exported frames: every second frame is used."""
+"""Step between exported frames: 2 means that every second frame is exported."""
 _WORLD = "world"
 _PLANE_M = 10.0
-"""Edge of the square that is drawn for an infinite plane."""
+"""Edge of the square that is drawn for an infinite plane [m]."""
 _THIN_M = 0.001
 
 
@@ -88,7 +88,7 @@ def foxglove(record: Record) -> bytes:
 
 
 def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Message]]:
-    """Yield everything to be written: (beat, topic, message)."""
+    """Yield everything that is written, as (beat, topic, message)."""
     for event in record.events:
         time = _time(started_ns + event.beat * BEAT_NS)
         yield event.beat, "/events", _log(event, time)
@@ -123,7 +123,7 @@ def _log(event: Event, time: Timestamp) -> Log:
 
 
 class _ScenePicture:
-    """A scene drawn with the colours of a sheet."""
+    """Draws a scene with the colours of a sheet, as messages for Foxglove."""
 
     def __init__(self, scene: Scene, sheet: Sheet) -> None:
         self._scene = scene
@@ -156,7 +156,10 @@ class _ScenePicture:
             )
 
     def shapes(self, time: Timestamp) -> SceneUpdate:
-        """Return all shapes but the markers; they replace everything drawn before."""
+        """Return all shapes except those of markers.
+
+        They replace everything that was drawn before.
+        """
         geoms: dict[int, list[SceneGeom]] = {}
         for geom in self._scene.geoms:
             if geom.marker < 0:
@@ -187,7 +190,7 @@ class _ScenePicture:
         )
 
     def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Timestamp) -> SceneEntity:
-        """Make one entity from shapes on one body, or from shapes that all stand still."""
+        """Make one entity from shapes on one body, or from shapes that never move."""
         moves = any(geom.body in self._kinematics.moving for geom in geoms)
         primitives: list[Any] = [
             primitive for geom in geoms for primitive in self._primitives(geom, moves)
@@ -203,7 +206,10 @@ class _ScenePicture:
         )
 
     def _primitives(self, geom: SceneGeom, moves: bool) -> Iterator[Any]:
-        """Yield a shape's primitives, in its body's frame, or in the world's if it stands still."""
+        """Yield the primitives of a shape, in its body's frame.
+
+        If it never moves, in the world's frame.
+        """
         pos, quat = np.array(geom.pos), np.array(geom.quat)
         if not moves:
             pos_w, quat_w = (array[geom.body] for array in self._rest)
@@ -252,7 +258,7 @@ def _time(time_ns: int) -> Timestamp:
 
 
 def _everything(time: Timestamp) -> SceneEntityDeletion:
-    """Make the deletion that clears a topic."""
+    """Make the message that deletes everything of a topic."""
     return SceneEntityDeletion(timestamp=time, type=SceneEntityDeletion.ALL)
 
 

@@ -57,11 +57,12 @@ class ForwardKinematics:
         self._roots: dict[int, int] = {}
         self._angles: dict[int, int] = {}
         self.moving: list[int] = []
-        """Indices of the bodies that belong to a robot."""
+        """Indices of the bodies of robots; all other bodies stand still."""
         self.rest = np.concatenate(
             [np.zeros(0), *([*_AT_ORIGIN, *([0.0] * count)] for count in joints)]
         )
-        """Poses of robots at the origin with every angle 0; enough for bodies that don't move."""
+        """Poses of a frame with all robots at the origin and every angle 0: enough for bodies that
+        don't move."""
         seats: list[int] = []
         for index, body in enumerate(scene.bodies):
             seats.append(body.seat if body.seat >= 0 or body.parent < 0 else seats[body.parent])

@@ -25,7 +25,9 @@ class PosData:
         self._tick = 0
 
     def add(self, frame: Frame) -> None:
-        """Add a frame: it becomes a row if physics ran in its beat. An older frame is ignored.
+        """Add a frame: it becomes a row if physics ran in its beat.
+
+        A frame older than the last one is ignored.
 
         Raises:
             ValueError: if the frame's robots have other numbers of joints.
@@ -43,7 +45,7 @@ class PosData:
         self._rows.append((self._tick, pose))
 
     def text(self) -> str:
-        """Return the file: tab-separated, one header row, one row for each tick."""
+        """Return the file as a text: tab-separated, a header row, then a row for each tick."""
         names = [f"j{joint}_deg" for joint in range(self.joints[self._seat])]
         header = ["time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg", *names]
         lines = ["\t".join(header)]

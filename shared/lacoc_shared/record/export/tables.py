@@ -1,4 +1,4 @@
-"""Export tables and JSON from a record; `foxglove` exports the 3D view."""
+"""Exports tables and JSON from a record; `foxglove` exports the 3D view."""
 
 import msgspec
 
@@ -16,7 +16,8 @@ from lacoc_shared.words import render, say
 def pos_data(record: Record, seat: str) -> bytes:
     """Make the Pos-data.txt of a seat (rules 2).
 
-    When a team comes with a robot that has another number of joints, all earlier rows are dropped.
+    If a team joins during the match with a robot that has another number of joints, all earlier
+    rows are dropped.
 
     Raises:
         UserError: if there is no such seat, or no frame has poses of robots.

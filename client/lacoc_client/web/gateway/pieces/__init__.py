@@ -1,1 +1,1 @@
-"""A match as numbered pieces of a second, which any web cache can keep for a crowd."""
+"""A match cut into numbered pieces of one second, which any web cache can keep for a crowd."""

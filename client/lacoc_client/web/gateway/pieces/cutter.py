@@ -1,4 +1,4 @@
-"""Cuts what a page is sent into pieces of a second. No I/O."""
+"""Cuts the messages that a page would get into pieces of one second. No I/O."""
 
 import secrets
 from collections import deque
@@ -12,32 +12,32 @@ from lacoc_client.web.gateway.files import PIECES_TYPE, PageFile, page_file
 from lacoc_shared.codec import encode
 
 PIECE_MS = 1000
-"""How much of a match is in a piece [ms]."""
+"""Length of a piece [ms]."""
 PIECES_KEPT = 30
-"""Number of pieces that can still be asked for; pages and caches keep older ones."""
+"""Number of newest pieces that the gateway still serves; pages and caches keep older ones."""
 
 
 class Piece(msgspec.Struct, array_like=True, frozen=True):
-    """What a page is sent in a second; each message is its kind and its payload."""
+    """The messages of one second; each message has its kind and its payload."""
 
     start: tuple[bytes, ...]
-    """All that a page needs which begins with this piece."""
+    """The messages that a page needs first if it begins to watch with this piece."""
     then: tuple[tuple[int, bytes], ...]
-    """What comes then: when in this second [ms], and the message."""
+    """The messages of this second: each with its time in the second [ms]."""
 
 
 class Cutter:
-    """Stands where the socket of a page would be, and keeps what it is sent as pieces.
+    """Takes the place of a page's socket, and cuts the messages to the page into pieces.
 
-    Piece `n` has what came in second `n` of the run. Its bytes never change: a run has a random
-    name, so no cache can confuse it with another one.
+    Piece `n` has the messages of second `n` of the run. The bytes of a piece never change. Each run
+    has a random name, so no cache can confuse it with another run.
 
     Args:
         clock: returns the time [s].
     """
 
     drained: Callable[[], None] | None = None
-    """Never called: nothing has to wait."""
+    """Never called: a cutter takes every message at once."""
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self.run = secrets.token_hex(6)
@@ -51,31 +51,31 @@ class Cutter:
 
     @property
     def keeps_up(self) -> bool:
-        """True: it takes all that comes."""
+        """True: a cutter takes every message at once."""
         return True
 
     def watch_closely(self) -> None:
-        """Do nothing: nobody steers a robot from here."""
+        """Do nothing: nobody steers a robot through a cutter."""
 
     def write(self, framed: bytes) -> None:
-        """Take in a message."""
+        """Put a message into the piece of this second."""
         now_ms = self._close()
         self._then.append((now_ms - self._closed * PIECE_MS, wire.inside(framed)))
         self._backlog.take(framed)
 
     def closed(self) -> int:
-        """Count the pieces that are whole: the newest has this number less one."""
+        """Return how many pieces are complete; the newest complete one has this number less one."""
         self._close()
         return self._closed
 
     def find(self, number: int) -> PageFile | None:
-        """Return a piece; None if it is not whole yet, or no longer kept."""
+        """Return a piece; None if it is not complete yet, or is no longer kept."""
         self._close()
         index = number - self._closed + len(self._pieces)
         return self._pieces[index] if 0 <= index < len(self._pieces) else None
 
     def _close(self) -> int:
-        """Close the pieces whose second is over; return the time of the run [ms]."""
+        """Complete the pieces whose second is over; return the time since the run began [ms]."""
         now_ms = int(1000 * (self._clock() - self._began_s))
         # After a long silence only the newest of the empty pieces are worth their bytes.
         first = max(self._closed, now_ms // PIECE_MS - PIECES_KEPT)

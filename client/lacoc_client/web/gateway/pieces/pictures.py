@@ -1,4 +1,4 @@
-"""The pictures that are cut into pieces, each from when somebody asks until nobody does."""
+"""The pictures that are cut into pieces; each is cut only while somebody asks for it."""
 
 import asyncio
 import time
@@ -13,9 +13,10 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 DIRECTOR, ASIDE, COURT = "director", "aside", "court"
-"""Names of the pictures: the director's two, and `court`, which a court's name may follow."""
+"""Names of the pictures: the director's first and second one, and `court`, after which a court's
+name may follow."""
 UNASKED_S = 60.0
-"""A picture for which nobody has asked for so long is cut no longer [s]."""
+"""If nobody asks for a picture for this time, it is cut no longer [s]."""
 
 
 @dataclass
@@ -26,7 +27,7 @@ class _CutPicture:
 
 
 class Pictures:
-    """Cuts the pictures of a gateway; used from the event loop only.
+    """Starts and ends the cutting of a gateway's pictures; used from the event loop only.
 
     Args:
         courts: the courts of the gateway.
@@ -37,10 +38,10 @@ class Pictures:
         self._cut: dict[str, _CutPicture] = {}
 
     def find(self, name: str) -> Cutter:
-        """Return the cutter of a picture, which begins now if nobody has asked for it lately.
+        """Return the cutter of a picture; begin to cut the picture if it is not being cut.
 
         Args:
-            name: `director`, `aside`, `court` (the first one) or `court/NAME`.
+            name: `director`, `aside`, `court` (the first court) or `court/NAME`.
 
         Raises:
             UserError: if there is no such picture.
@@ -51,12 +52,15 @@ class Pictures:
         return found.cutter
 
     def known(self, name: str) -> Cutter | None:
-        """Return the cutter of a picture that is being cut; else None."""
+        """Return the cutter of a picture; None if the picture is not being cut."""
         found = self._known(name)
         return None if found is None else found.cutter
 
     def audience(self, name: str) -> Audience | None:
-        """Return the pages that see the same court as a picture; None: it is not being cut."""
+        """Return the pages that see the same court as a picture.
+
+        None: the picture is not being cut.
+        """
         found = self._cut.get(name)
         if found is None:
             return None
@@ -65,7 +69,7 @@ class Pictures:
         return self._courts.find(name.partition("/")[2] or None)[0].audience
 
     async def forget(self) -> None:
-        """Stop cutting what nobody asks for; ends only when it is cancelled."""
+        """Stop cutting pictures that nobody asks for; runs until it is cancelled."""
         while True:
             await asyncio.sleep(UNASKED_S / 4)
             old_s = time.monotonic() - UNASKED_S

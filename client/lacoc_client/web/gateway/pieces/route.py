@@ -1,4 +1,4 @@
-"""The routes of pieces: which are there, and each of them."""
+"""The routes of pieces: which pieces there are, each piece, and reports from those who watch."""
 
 import re
 import time
@@ -23,24 +23,26 @@ HERE_HZ, HERE_BURST = 4.0 * HEARD_MOST / LOOKS_S, 4 * HEARD_MOST
 HERE_BYTES = 256
 _NUMBER = re.compile(r"[0-9]{1,9}")
 _ROOM_PART = 4
-"""There is room for pages when a quarter of the places is free: else each would be sent back."""
+"""Pages are told that there is room on WebSockets if one place in so many is free. With fewer free
+places many pages would come and be refused."""
 
 
 class PiecesNow(msgspec.Struct, frozen=True):
-    """Which pieces of a picture there are."""
+    """Which pieces of a picture can be fetched now."""
 
     run: str
-    """Name of the run; another one begins when the gateway starts, or after a time unasked."""
+    """Name of the run. A new run begins when the gateway starts, or when somebody asks again after
+    a pause."""
     closed: int
-    """Number of pieces that are whole: the newest has this number less one."""
+    """Number of complete pieces; the newest complete one has this number less one."""
     room: bool
-    """Whether there is room for pages on WebSockets."""
+    """Whether there is room for this page on a WebSocket."""
     share: float
-    """The chance with which a page says each 10 s that it is here."""
+    """The chance with which a page reports every 10 s that it is there."""
 
 
 class Here(msgspec.Struct, frozen=True):
-    """What a page in pieces says: that it is here, and how often it cheered, by symbol."""
+    """The report of a page in pieces: that it is there, and how often it cheered, by symbol."""
 
     cheers: Annotated[list[Annotated[int, msgspec.Meta(ge=0)]], msgspec.Meta(max_length=SYMBOLS)]
 
@@ -48,8 +50,8 @@ class Here(msgspec.Struct, frozen=True):
 def piece_routes(courts: Courts, pictures: Pictures, crowd: Crowd) -> list[BaseRoute]:
     """Return the routes of pieces.
 
-    A page that watches in pieces takes no place of a spectator. All its requests can be answered
-    by a cache on the way.
+    A page that watches in pieces does not count as a spectator with a place. A cache on the way can
+    answer its requests for pieces.
 
     Args:
         courts: the courts of the gateway.

@@ -1,4 +1,4 @@
-"""What is known of a group: who is in it, who does what, and which word it has chosen."""
+"""The state of a group: its members, their roles, and the words for its way of walking."""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal
@@ -21,26 +21,26 @@ _TITLE_MOST = 40
 
 
 class GroupWord(msgspec.Struct, frozen=True, kw_only=True):
-    """A word for how the robot should walk."""
+    """A word for how the group's robot should walk."""
 
     word: str
     by: str
-    """Who proposed it."""
+    """Nickname of the member who proposed it; "": this member has left."""
 
 
 class GroupState(msgspec.Struct, frozen=True, kw_only=True):
-    """A group; every change makes a new state."""
+    """The state of a group; each change makes a new object."""
 
     id: str
-    """Names its table."""
+    """Id of the group and of its table."""
     name: str
     members: tuple[str, ...] = ()
-    """Nicknames, whoever came first first."""
+    """Nicknames of the members, in the order in which they came."""
     roles: Mapping[str, Role] = {}
-    """By nickname."""
+    """The role of each member who has one, by nickname."""
     words: tuple[GroupWord, ...] = ()
     votes: Mapping[str, str] = {}
-    """The word of each member who has voted."""
+    """The word for which each member has voted, by nickname."""
     handed: Handed | None = None
     """The last table that the teacher handed out to this group."""
 
@@ -57,7 +57,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.structs.replace(self, members=(*self.members, member))
 
     def left(self, member: str) -> "GroupState":
-        """Return the group without a member; the member's words stay until nobody wants them."""
+        """Return the group without a member; the words that the member proposed stay."""
         return msgspec.structs.replace(
             self,
             members=tuple(one for one in self.members if one != member),
@@ -70,11 +70,13 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
         )
 
     def with_role(self, member: str, role: Role) -> "GroupState":
-        """Return the group in which a member has a role; "": none."""
+        """Return the group after a member has taken a role; "": no role."""
         return msgspec.structs.replace(self, roles={**self.roles, member: role})
 
     def voted(self, member: str, word: str) -> "GroupState":
-        """Return the group after a member's vote for a word, which may be a new proposal.
+        """Return the group after a member's vote for a word.
+
+        A word that is new is proposed with it.
 
         Raises:
             UserError: if there are too many words already.
@@ -90,7 +92,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """The word with most votes, and of equal ones the first; "": none."""
+        """The word with the most votes, of equal ones the first; "": no word has a vote."""
         counts = [(self.count(one.word), -at, one.word) for at, one in enumerate(self.words)]
         return max(counts)[2] if counts and max(counts)[0] else ""
 
@@ -100,5 +102,8 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def group_title(name: str, students: Iterable[str]) -> str:
-    """Return the name of a group where it stands beside students: one may be called like it."""
+    """Return the name of a group for lists in which students stand too.
+
+    It differs from their names.
+    """
     return told_apart(name, students, "group", _TITLE_MOST)

@@ -1,4 +1,4 @@
-"""The tables of groups, and their place in the class file."""
+"""The tables of a class's groups, and how they are kept in the class file."""
 
 import asyncio
 import time
@@ -14,7 +14,8 @@ from lacoc_client.workshop.tables.shared_table import SharedTable
 from lacoc_shared.mistakes import UserError
 
 OF_GROUP = "group\n"
-"""Before the id of a group: whose its documents are in the class file. No nickname has it."""
+"""In the class file a group's documents are kept under this prefix and the group's id. No student's
+nickname begins with it."""
 
 
 class GroupTables:
@@ -32,11 +33,13 @@ class GroupTables:
         return self._tables[id_]
 
     async def begin(self, documents: Iterable[Document], gone: Mapping[str, Iterable[str]]) -> None:
-        """Begin with what the class file has; delete what it has of groups that have ended.
+        """Load the tables of groups from the class file.
+
+        Delete from it what is left of ended groups.
 
         Args:
-            documents: what the file has of groups.
-            gone: for each group those of its members whom the class does not know any more.
+            documents: the documents of groups in the class file.
+            gone: for each group its members who are no students of the class any more.
         """
         kept = {one.student: one for one in documents if one.name == TABLE}
         for id_, names in gone.items():
@@ -60,7 +63,7 @@ class GroupTables:
         return table
 
     async def end(self, id_: str) -> None:
-        """Delete the table of a group that has ended."""
+        """Delete the table of a group that ends."""
         del self._tables[id_]
         await self._delete(OF_GROUP + id_)
 

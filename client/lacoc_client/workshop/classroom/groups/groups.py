@@ -1,4 +1,4 @@
-"""The groups of a class: who comes and goes."""
+"""The groups of a class: students join and leave them, take roles and vote for words."""
 
 import asyncio
 import time
@@ -25,9 +25,11 @@ from lacoc_shared.words import say
 
 _LONGEST_NAME = 20
 _CHANGES_HZ, _CHANGES_BURST = 10.0, 60
-"""Changes of all groups [1/s]: each is told to the whole class."""
+"""How many changes of all groups pass a second, and at once; each change is told to the whole
+class."""
 _OWN_HZ, _OWN_BURST = 1.0, 20
-"""Changes by one student [1/s]: nobody uses up what all have."""
+"""How many changes by one student pass a second, and at once, so that one student can't use up
+those of all."""
 
 
 class Groups:
@@ -46,19 +48,20 @@ class Groups:
         students: Mapping[str, ClassStudent],
     ) -> None:
         self.states: dict[str, GroupState] = {}
-        """By id."""
+        """The state of each group, by its id."""
         self._changed = changed
         self._students = students
         self._tables = GroupTables(store)
         self._allowance = Allowance(_CHANGES_HZ, _CHANGES_BURST)
         self._own_allowances: dict[str, Allowance] = {}
         self._moving = asyncio.Lock()
-        """Held while a student comes or goes."""
+        """Held while a student joins or leaves a group."""
 
     async def begin(self, states: Iterable[GroupState], documents: Iterable[Document]) -> None:
-        """Begin with what the class file has; students sit down at their groups' tables.
+        """Load the groups from the class file; let the students work on their groups' tables again.
 
-        The program may have ended while a student was deleted, or a group ended.
+        The program may have been ended while a student was deleted or a group ended; what is left
+        of them is removed.
         """
         gone: dict[str, list[str]] = {}
         for state in states:
@@ -79,10 +82,10 @@ class Groups:
         return next(found, None)
 
     def find(self, name: str) -> GroupState:
-        """Return a group.
+        """Return a group by name.
 
         Raises:
-            UserError: if there is none of this name.
+            UserError: if there is no group of this name.
         """
         for state in self.states.values():
             if same_name(state.name) == same_name(name):
@@ -94,10 +97,11 @@ class Groups:
         return {self.states[id_].name: one for id_, one in self._tables.drafts().items()}
 
     async def join(self, student: ClassStudent, name: str) -> None:
-        """Bring a student into a group, which begins with the student's table if it is new.
+        """Put a student into a group; a new group begins with a copy of the student's table.
 
         Raises:
-            UserError: if the name is none, too much like another one, or the group is full.
+            UserError: if the name is not allowed, too much like that of another group, or the group
+                is full.
         """
         read = read_name(name, _LONGEST_NAME)
         if read is None:
@@ -120,13 +124,13 @@ class Groups:
             await self._tell()
 
     async def leave(self, student: ClassStudent) -> None:
-        """Let a student go back to the own table; a group without members ends."""
+        """Let a student work on the own table again; a group without members ends."""
         async with self._moving:
             if await self._leave(student):
                 await self._tell()
 
     async def forget(self, student: ClassStudent) -> None:
-        """Remove a student who is deleted, and what the student typed, from the group."""
+        """Remove a student who is deleted from the group, and the student's proposals."""
         async with self._moving:
             self._own_allowances.pop(student.name, None)
             state = self.of(student)
@@ -138,11 +142,11 @@ class Groups:
             await self._tell()
 
     async def set_role(self, student: ClassStudent, role: Role) -> None:
-        """Give a student a role in the group; "": none."""
+        """Give a student a role in the group; "": no role."""
         await self._change(self._own(student).with_role(student.name, role))
 
     async def vote(self, student: ClassStudent, word: str) -> None:
-        """Count a student's vote for a word; it is the student's own word then."""
+        """Count a student's vote for a word; if the word is new, the student proposes it."""
         word = word.strip()
         if not word:
             raise UserError(say("groups.no-word"))
@@ -153,7 +157,7 @@ class Groups:
         """Offer a table to the members of a group.
 
         Raises:
-            UserError: if there is no such group.
+            UserError: if there is no group of this name.
         """
         state = msgspec.structs.replace(self.find(name), handed=handed)
         await self._change(state)
@@ -162,7 +166,7 @@ class Groups:
                 student.send(handed.message())
 
     def spend(self, student: ClassStudent) -> None:
-        """Count a change that a student asks for.
+        """Count a change of groups that a student asks for.
 
         Raises:
             UserError: if there were too many.
@@ -173,7 +177,7 @@ class Groups:
             raise UserError(say("gateway.too-much"))
 
     def message(self, student: ClassStudent) -> bytes:
-        """Return the message with a student's group, and with all groups that can be joined."""
+        """Return the message to a student about the own group and all groups that can be joined."""
         state = self.of(student)
         listed = [{"name": one.name, "members": len(one.members)} for one in self.states.values()]
         body: dict[str, Any] = {"groups": listed, "group": None}
@@ -199,7 +203,7 @@ class Groups:
         return wire.map_message(MessageKind.GROUP, body)
 
     def tell(self, only: GroupState | None = None) -> None:
-        """Tell all students, or the members of one group, how their groups are."""
+        """Tell all students, or only the members of one group, the state of their groups."""
         for student in self._students.values():
             if only is None or student.name in only.members:
                 student.send(self.message(student))
@@ -223,7 +227,7 @@ class Groups:
         self.tell(state)
 
     async def _leave(self, student: ClassStudent) -> bool:
-        """Remove a student from the group; return whether there was one."""
+        """Remove a student from the group; return whether the student was in one."""
         state = self.of(student)
         if state is None:
             return False

@@ -1,4 +1,4 @@
-"""A table that the teacher handed out."""
+"""A table that the teacher has handed out."""
 
 import msgspec
 
@@ -8,14 +8,14 @@ from lacoc_client.workshop.design.table import FileTable
 
 
 class Handed(msgspec.Struct, frozen=True, kw_only=True):
-    """A table that the teacher handed out, to all or to a group."""
+    """A table that the teacher has handed out, to all students or to a group."""
 
     number: int
-    """Counts the tables of the class, from 1."""
+    """Number of the table among all that were handed out in this class, from 1."""
     title: str
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None
 
     def message(self) -> bytes:
-        """Return the message that offers it to a page."""
+        """Return the message that offers the table to a page."""
         return wire.map_message(MessageKind.HANDED, msgspec.structs.asdict(self))

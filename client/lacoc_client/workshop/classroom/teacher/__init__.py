@@ -1,1 +1,1 @@
-"""The teacher's page of a class: what it asks, and what it is told."""
+"""The teacher's page of a class: the requests that it sends, and the messages that it gets."""

@@ -1,4 +1,4 @@
-"""What the teacher's pages of a class are told."""
+"""The messages to the teacher's pages of a class."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,13 +15,13 @@ from lacoc_shared.words import Phrase
 
 
 class Trouble(NamedTuple):
-    """What may be wrong around a class."""
+    """Troubles of a class about which the teacher is told."""
 
     file: Phrase | None
-    """What is wrong with the class file; None: nothing."""
+    """What is wrong with the class file; None: nothing is wrong."""
     studios: int
     why: Phrase | None
-    """Why there is no studio; None: there is one, or nothing is known."""
+    """Why there is no studio; None: there is one, or it is not known yet."""
 
 
 def class_message(
@@ -33,10 +33,11 @@ def class_message(
     """Return the message about a class.
 
     Args:
-        state: its settings, groups, and what was handed out.
+        state: settings and groups of the class, and what was handed out.
         addresses: addresses that students can open.
-        trouble: what may be wrong.
-        cards: of all students, for a page that has just come; None: it has them.
+        trouble: what is wrong with the class file or the studio.
+        cards: the cards of all students, for a page that has just been opened; None: the page has
+            them already.
     """
     handed = state.handed
     body = {
@@ -69,7 +70,7 @@ def card_message(card: Card) -> bytes:
 
 
 def gone_message(name: str) -> bytes:
-    """Return the message about a student who was forgotten."""
+    """Return the message that a student was deleted."""
     return wire.map_message(MessageKind.GONE, {"name": name})
 
 

@@ -29,7 +29,7 @@ _ASKS_HZ, _ASKS_BURST = 20.0, 100
 
 
 class TeacherPage:
-    """One page's connection.
+    """The connection of one page /class.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
@@ -121,7 +121,10 @@ class TeacherPage:
         await self._class.hand_out(asked.title, table, asked.sequences, asked.group)
 
     async def _show(self, student: ClassStudent) -> dict[str, Any]:
-        """Let a student's robot walk; return robot, trial and table for the big screen."""
+        """Let a student's robot walk with the newest table.
+
+        Return robot, trial and table to show.
+        """
         draft = _draft(student)
         file = draft.robot or self._class.robot
         trial = TrialAsk(id=0, table=draft.table, robot=file, sequences=draft.sequences)
@@ -143,7 +146,7 @@ class TeacherPage:
         return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
 
     def _players(self) -> dict[str, SeatFiles]:
-        """Return the files of everybody who has a table, by nickname or name of the group."""
+        """Return the files of everybody who has a table, by nickname or by name of the group."""
         students = [one for one in self._class.students.values() if one.table is one.own]
         drafts = {one.name: one.draft for one in students if one.draft is not None}
         for name, draft in self._class.groups.drafts().items():

@@ -1,4 +1,4 @@
-"""What the teacher's page asks (docs/gateway.md has it as a table)."""
+"""The requests of the teacher's page (docs/gateway.md has them in a table)."""
 
 from typing import Annotated, Literal
 
@@ -17,14 +17,17 @@ class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
 
 
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
-    """Offer a table to all or to a group: this one, that of a student, or else the sample."""
+    """Offer a table to all students or to a group.
+
+    It is the given table, or that of a student, or else the sample.
+    """
 
     title: Name = ""
     table: FileTable | None = None
     sequences: Sequences | None = None
     student: Name | None = None
     group: Name = ""
-    """To whom; "": to all."""
+    """Name of the group that gets it; "": all students get it."""
 
 
 class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
@@ -32,29 +35,29 @@ class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
 
     student: Name
     group: Name
-    """A group that is not there yet is made; "": the student works alone."""
+    """Name of the group; a group that does not exist is made. "": the student works alone."""
 
 
 class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
-    """Take a student's hand down."""
+    """Take down the raised hand of a student."""
 
     student: Name
 
 
 class AdmitAsk(Ask, frozen=True, kw_only=True, tag="admit"):
-    """Let another browser in under a student's name."""
+    """Allow one more browser to enter under a student's name."""
 
     student: Name
 
 
 class ForgetAsk(Ask, frozen=True, kw_only=True, tag="forget"):
-    """Delete all that is kept of a student."""
+    """Delete everything that is kept of a student."""
 
     student: Name
 
 
 class NewCodeAsk(Ask, frozen=True, kw_only=True, tag="new_code"):
-    """Set another class code."""
+    """Make another class code."""
 
 
 class ShowAsk(Ask, frozen=True, kw_only=True, tag="show"):

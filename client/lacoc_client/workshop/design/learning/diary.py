@@ -1,4 +1,4 @@
-"""Keeps the evidence of what one student does, and reads the student's documents."""
+"""Keeps the evidence and the documents of one student."""
 
 import asyncio
 import time
@@ -33,7 +33,7 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     """A phase as a page shows it."""
 
     number: int
-    """From 0 to 6."""
+    """Number of the phase, from 0 to 6."""
     state: State
     share: float
     """Part of the task that is done, from 0 to 1."""
@@ -45,31 +45,32 @@ class PhaseState(msgspec.Struct, frozen=True, kw_only=True):
     missing: tuple[Phrase, ...]
     """Sentences that say what is still missing, the most useful first."""
     asked: AskedQuestion | None
-    """The question that waits for an answer; None: none does."""
+    """The question of the phase that the student must answer now; None: there is no such
+    question."""
 
 
 class Phases(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a student is in the phases."""
+    """How far a student is in the phases, for the student's page."""
 
     phase: int
-    """Number of the phase that the student is at, from 0 to 6."""
+    """Number of the student's present phase, from 0 to 6."""
     word: str
-    """The word that the student chose for how the robot should walk; "": none yet."""
+    """The word that the student chose for how the robot should walk; "": no word yet."""
     hand_up: bool
     """Whether the student asks for help now."""
     trouble: Phrase | None
-    """Why progress is not kept, or that its file was damaged; None: all is well."""
+    """Why progress can't be kept, or that its file was damaged; None: all is well."""
     lesson_step: int
-    """The step of the lesson of one leg to which the student came last; 0: none yet."""
+    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
     phases: tuple[PhaseState, ...]
     """All phases; each stands at the index that is its number."""
     rules: StudentRules
 
 
 class Diary:
-    """The evidence of one student; used from the event loop only.
+    """The evidence and documents of one student; used from the event loop only.
 
-    If the file can't be opened, it is kept in memory until the program ends, and
+    If the file can't be opened, the evidence stays in memory until the program ends, and
     `Keeper.trouble` says why.
 
     Args:
@@ -86,15 +87,15 @@ class Diary:
         self._reading = asyncio.Lock()
         self._is_forgotten = False
         self.documents: tuple[Document, ...] = ()
-        """The student's documents as earlier runs kept them."""
+        """The student's documents, as earlier runs of the program wrote them."""
 
     async def read(self) -> None:
-        """Read the evidence and the documents that earlier runs kept, if there is a file."""
+        """Read the evidence and documents of earlier runs, if there is a file."""
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
     def begin(self, evidence: Iterable[Evidence], documents: Iterable[Document]) -> None:
-        """Begin with what the file has of this student.
+        """Take over what the class file has of this student.
 
         Args:
             evidence: the student's evidence, in order.
@@ -106,7 +107,7 @@ class Diary:
         self.documents = tuple(documents)
 
     async def add(self, *evidence: Evidence) -> None:
-        """Keep evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
+        """Add evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
         if not evidence or self._is_forgotten:
             return
         self._evidence += evidence
@@ -117,7 +118,10 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Keep a vote, unless the student has voted in this poll before."""
+        """Count a vote and keep that the student voted.
+
+        Do nothing if it is a second vote in this poll.
+        """
         if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return
         self._evidence.append(Voted(poll=poll))
@@ -134,12 +138,12 @@ class Diary:
             await _kept(asyncio.wrap_future(store.write(document)))
 
     async def forget(self) -> None:
-        """Delete all that is kept of the student; nothing more is kept from now on.
+        """Delete everything that is kept of the student, and keep nothing more from now on.
 
-        A trial may still run, and a page may still be coming in: what they bring is dropped.
+        Evidence of a trial that still runs, or of a page that is just being let in, is dropped.
 
         Raises:
-            UserError: if the file can't be opened or written; then all is as before.
+            UserError: if the file can't be opened or written; then nothing is deleted.
         """
         store = await self._keeper.opened()
         if store is None:
@@ -165,12 +169,12 @@ class Diary:
 
     @property
     def lesson(self) -> tuple[TookStep, ...]:
-        """What the student did in the lesson of one leg, in order."""
+        """The steps and answers of the student in the lesson of one leg, in order."""
         return tuple(one for one in self._evidence if isinstance(one, TookStep))
 
     @property
     def has_earned_sample(self) -> bool:
-        """Whether the sample gait is the student's reward: phase 4 is done."""
+        """Whether the student has earned the sample gait: phase 4 is done."""
         return self.progress.outcomes[A_CYCLE.number].met
 
     @property
@@ -211,7 +215,7 @@ class Diary:
         )
 
     def question(self, phase: int) -> PhaseQuestion | None:
-        """Return the question of a phase that waits for an answer; None: none does."""
+        """Return the question of a phase that the student must answer now; None: there is none."""
         return self.progress.questions[phase]
 
     def _asked(self, phase: int) -> AskedQuestion | None:

@@ -1,4 +1,4 @@
-"""The file that keeps what students do, opened when it is first needed."""
+"""The file that keeps students' evidence and tables; it is opened when it is first needed."""
 
 import asyncio
 from pathlib import Path
@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase
 class Keeper:
     """A file of evidence and tables; used from the event loop only.
 
-    Where it can't be opened, nothing is kept, and `trouble` says why.
+    If the file can't be opened, nothing is kept on the disk, and `trouble` says why.
 
     Args:
         path: the file.
@@ -25,7 +25,7 @@ class Keeper:
 
     @property
     def trouble(self) -> Phrase | None:
-        """Why nothing is kept, or what happened to the file; None: all is well."""
+        """Why nothing can be kept, or what happened to the file; None: all is well."""
         return self._refused if self._store is None else self._store.trouble
 
     async def opened(self) -> ClassStore | None:

@@ -43,33 +43,33 @@ from lacoc_shared.words import Phrase, say
 
 
 class Judged(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether a guess of where a foot goes was right."""
+    """A guess of where a foot goes, and whether it was right."""
 
     said: str
     was: tuple[str, ...]
-    """All right answers, that of the foot's largest motion first."""
+    """All right answers; first the direction in which the foot moved most."""
     right: bool
 
 
 class EditReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to an edit."""
+    """The answer to `EditAsk`."""
 
     guess: Judged | None = None
-    """None: the student guessed nothing, or the guess can't be judged."""
+    """The judged guess; None: the student guessed nothing, or the guess can't be judged."""
 
 
 class AnswerReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to an answer."""
+    """The answer to `AnswerAsk`: whether the student's answer was right."""
 
     right: bool
     was: tuple[Phrase, ...]
     """All right choices."""
     because: Phrase
-    """Why they are right."""
+    """An explanation of the right choices."""
 
 
 class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to a check."""
+    """The answer to `CheckAsk`."""
 
     keys: int
     """Number of keys of level B; keys that share one sequence of postures count once."""
@@ -96,7 +96,7 @@ class Learner:
         self._samples: dict[tuple[str, SentFile | None], TrialFacts | None] = {}
 
     async def edited(self, asked: requests.EditAsk) -> EditReply:
-        """Take in the table after an edit, and judge the guess that the student made before it.
+        """Keep an edit as evidence, and judge the guess that the student made before it.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -120,10 +120,10 @@ class Learner:
         return EditReply(guess=judged)
 
     async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> TrialFacts | None:
-        """Take in a trial, and judge the guesses that were made before it.
+        """Keep a trial as evidence, and judge the guesses that were made before it.
 
         Returns:
-            What the trial showed; None: it is no evidence.
+            The facts of the trial; None: the trial is no evidence.
         """
         facts = _facts(reply, asked.keys)
         if asked.table is None or facts is None:
@@ -152,7 +152,7 @@ class Learner:
 
         Args:
             asked: the trial.
-            own: what the trial showed, as `tried` returns it.
+            own: the facts of the trial, as `tried` returns them.
 
         Returns:
             Whether the comparison was kept as evidence.
@@ -174,7 +174,7 @@ class Learner:
         return bool(differs)
 
     async def answered(self, asked: requests.AnswerAsk) -> AnswerReply:
-        """Take in the answer to the question of a phase.
+        """Judge and keep the answer to the question of a phase.
 
         Raises:
             UserError: if the phase does not ask this question now.
@@ -194,9 +194,9 @@ class Learner:
         return AnswerReply(right=is_right, was=was, because=question.because)
 
     async def stepped(self, asked: requests.LessonAsk) -> None:
-        """Take in what the student does in the lesson of one leg; an arrival is not kept twice.
+        """Keep a step or an answer in the lesson of one leg; reaching a step is not kept twice.
 
-        The first answer to a question counts for the question's step, a later one as new work.
+        The first answer to a question counts for the step; a later answer counts as new work.
         """
         is_answer = asked.question is not None
         one = TookStep(
@@ -236,7 +236,7 @@ class Learner:
 
 
 def _version(table: FileTable, sequences: object) -> str:
-    """Return a name for the content of a table and its sequences: equal contents, equal names.
+    """Return a name for the content of a table and its sequences; equal contents have equal names.
 
     Raises:
         FileRefused: with every mistake of the table.
@@ -257,7 +257,11 @@ def _robot(robot: SentFile | None) -> RobotSpec:
 
 
 def _guessed(edit: Edited, said: str, spec: RobotSpec) -> Guessed | None:
-    """Judge the guess of where the foot of the first changed leg goes; None: it can't be judged."""
+    """Judge the guess of where the foot of the first changed leg goes.
+
+    Returns:
+        The guess with the right answers; None: it can't be judged.
+    """
     leg = edit.legs[0]
     if not leg.before_deg or leg.leg >= len(spec.legs):
         return None

@@ -1,19 +1,20 @@
-"""What a teacher allows in a class."""
+"""The teacher's choices of what students of a class may do."""
 
 from typing import Annotated, Literal
 
 import msgspec
 
 Help = Literal["none", "matters", "cell", "three", "table"]
-"""How much the coach may help: not at all, say which numbers matter, or change so many."""
+"""How much the coach may help: not at all, only say which numbers matter, or change one number,
+three, or the whole table."""
 _HELPS: tuple[Help, ...] = ("none", "matters", "cell", "three", "table")
 
 
 class StudentRules(msgspec.Struct, frozen=True, kw_only=True):
-    """Rules for students. Whoever designs alone may do everything (`FREE`)."""
+    """What students may do. A person who designs alone may do everything (`FREE`)."""
 
     closed: tuple[Annotated[int, msgspec.Meta(ge=0, le=6)], ...] = ()
-    """Numbers of the phases to which nobody can go."""
+    """Numbers of the phases that are closed: no student can go to them."""
     coach: Help = "table"
     explain_first: bool = False
     """Whether students read the explanation of a phase before its task."""

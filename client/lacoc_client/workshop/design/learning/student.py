@@ -1,4 +1,4 @@
-"""A student at work: what was done, and the pages on which it is seen."""
+"""A student at work: the student's evidence, tables and open pages."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -20,7 +20,7 @@ class Student:
     """A student, alone or in a class; used from the event loop only.
 
     Args:
-        name: nickname in the class; "": whoever designs alone.
+        name: nickname in the class; "": a person who designs alone.
         diary: keeps what the student does.
         rules: returns what the teacher allows.
     """
@@ -34,7 +34,7 @@ class Student:
         self.lessons: dict[Viewer, None] = {}
         """The student's pages of the lesson of one leg, which change no table."""
         self.own = SharedTable("", self._keep)
-        """The student's own table."""
+        """The student's own table; in a group the student works on another one."""
         self.table = self.own
         """The table on which the student works."""
 
@@ -49,7 +49,7 @@ class Student:
         return self.table.draft
 
     def open_kept(self) -> None:
-        """Begin with the table that the diary kept; without one the table stays as it is."""
+        """Open the table that the diary has kept; if there is none, the table stays as it is."""
         kept = kept_table(self.diary.documents)
         if kept is not None:
             with suppress(UserError):  # of another version of this program
@@ -57,7 +57,7 @@ class Student:
         self.table = self.own
 
     def sit_at(self, table: SharedTable) -> None:
-        """Work on another table from now on; all pages take it."""
+        """Let the student work on another table from now on; all the student's pages show it."""
         if table is self.table:
             return
         for viewer in self.viewers:
@@ -67,16 +67,16 @@ class Student:
             table.show(viewer, self.name)
 
     def tell(self) -> None:
-        """Tell all pages how far the student is."""
+        """Tell all the student's pages how far the student is."""
         self.send(self.phases_message())
 
     def send(self, message: bytes) -> None:
-        """Send a message to all pages."""
+        """Send a message to all the student's pages."""
         for viewer in (*self.viewers, *self.lessons):
             viewer.send(message)
 
     def greet(self, viewer: Viewer, lesson: bool) -> None:
-        """Take in a page that was let in.
+        """Add a page that was let in, and send it what it shows first.
 
         Args:
             viewer: the page.
@@ -97,7 +97,7 @@ class Student:
             self.own.end()
 
     def send_away(self) -> None:
-        """Tell all pages that the student was deleted, and refuse what they ask from now on."""
+        """Tell all pages that the student was deleted; from now on their requests are refused."""
         message = wire.map_message(MessageKind.FORGOTTEN, {})
         for pages in (self.viewers, self.lessons):
             for viewer in (*pages,):
@@ -109,7 +109,7 @@ class Student:
         await self.diary.write(TABLE, state, epoch)
 
     def phases_message(self) -> bytes:
-        """Return the message that says how far the student is."""
+        """Return the message that says how far the student is in the phases."""
         return wire.map_message(
             MessageKind.PHASES, msgspec.structs.asdict(self.diary.phases(self.rules))
         )

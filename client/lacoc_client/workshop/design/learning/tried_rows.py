@@ -1,4 +1,4 @@
-"""The rows of a table that a trial runs through, as evidence."""
+"""The rows of a table that the keys of a trial use, as evidence."""
 
 import math
 
@@ -12,7 +12,10 @@ _SAME_DEG = 0.01
 
 
 def row_names(asked: TrialAsk, pressed: str) -> tuple[int, ...]:
-    """Return what the rows of a pressed key are called: by digit, or 1, 2 ... in level B's file."""
+    """Return the names of the rows that a pressed key uses.
+
+    They are digits; or 1, 2 ... in a table of level B.
+    """
     rows = _rows_of(asked, pressed)
     if asked.table is not None and asked.table.kind == "locomotion":
         return tuple(row.posture + 1 for row in rows)
@@ -20,7 +23,7 @@ def row_names(asked: TrialAsk, pressed: str) -> tuple[int, ...]:
 
 
 def numbers(asked: TrialAsk, keys: tuple[str, ...], spec: RobotSpec) -> tuple[TriedNumber, ...]:
-    """Return the numbers of the pressed keys' rows that differ from the robot's start posture."""
+    """Return those numbers in the rows of the pressed keys that differ from the start posture."""
     legs = len(spec.legs)
     start_deg = [round(math.degrees(angle), 3) for angle in spec.start_posture]
     rows = {(row.key, row.posture): row for key in keys for row in _rows_of(asked, key)}

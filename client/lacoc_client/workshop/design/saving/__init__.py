@@ -1,1 +1,1 @@
-"""Saves tables into a student's own files, and loses nothing else that is in them."""
+"""Saves tables into a student's own files, and keeps everything else that is in them."""

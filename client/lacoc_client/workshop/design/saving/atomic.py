@@ -1,4 +1,4 @@
-"""Replaces a file as a whole: after a failure or a power cut, the old or the new file is there."""
+"""Replaces a file in one step: after a failure or a power cut, the old or the new file is whole."""
 
 import errno
 import os

@@ -37,7 +37,7 @@ RobotEntry = Literal[
     "armature",
     "friction",
 ]
-"""A number of a robot, by the name that the studio's facts give it."""
+"""A number of the whole robot, by its name in the facts that the studio sends."""
 LegEntry = Literal["leg_x_m", "leg_y_m", "leg_z_m", "leg_outward_deg"]
 """A number of one leg: where it is fixed to the body, and where it points."""
 AnyEntry = Literal[RobotEntry, LegEntry]
@@ -49,7 +49,7 @@ class _NumberPlace(NamedTuple):
     table: str
     name: str
     at: int | None = None
-    """Place in the list; None: the entry is no list."""
+    """Place of the number in the entry's list; None: the entry is a single number."""
 
 
 _PLACES: Mapping[AnyEntry, _NumberPlace] = {
@@ -93,7 +93,8 @@ def edit_robot(text: str, entry: AnyEntry, value: float, leg: int = 0) -> str:
     Args:
         text: the robot file (TOML).
         entry: which number.
-        value: the number, in the unit of its name. Whether a robot may have it is not checked here.
+        value: the new number, in the unit that the entry's name ends with. The limits of a robot
+            are not checked here.
         leg: which leg, from 0; only for a `LegEntry`.
 
     Raises:
@@ -154,7 +155,7 @@ def _put(table: Any, name: str, at: int | None, value: float) -> None:
 
 
 def _like(old: Any, value: float) -> Any:
-    """Return a number as it is written in a file: whole where the old one was whole."""
+    """Return a number in the style of the old one: a whole number if the old one was whole."""
     if isinstance(old, int) and value == int(value):
         return int(value)
     return float(value)

@@ -16,8 +16,8 @@ _SIZE = re.compile(r'(<(?:\w+:)?dimension\b[^>]*\sref=")([^"]*)"')
 def with_ranges(xml: bytes, layout: Layout) -> bytes:
     """Return a sheet's XML with ranges that fit the changed table.
 
-    Input checks and colour rules of the table reach to its new last row. Merged headings move down
-    with the legend.
+    Input checks and colour rules of the table are extended to its new last row. Merged headings in
+    the legend move down with it.
     """
     text = xml.decode()
     last = max((row for row, _ in layout.wanted if layout.wanted[row, 2] is not None), default=0)
@@ -37,7 +37,7 @@ def with_ranges(xml: bytes, layout: Layout) -> bytes:
 
 
 def _longer(one: str, layout: Layout, last: int) -> str:
-    """Return a range; if it ends at the table's old last row, it ends at `last` instead."""
+    """Return a range, extended to row `last` if it ends at the table's old last row."""
     left, top, right, bottom = range_boundaries(one)
     if bottom != layout.bottom or top >= bottom or right > layout.columns:
         return one
@@ -45,7 +45,7 @@ def _longer(one: str, layout: Layout, last: int) -> str:
 
 
 def _moved(reference: str, layout: Layout) -> str:
-    """Return a range; if it lies in the legend, it moves down with the legend."""
+    """Return a range, moved down with the legend if it lies in the legend."""
     left, top, right, bottom = range_boundaries(reference)
     first, stop = layout.legend
     if not (first <= top and bottom < stop and right <= layout.columns):

@@ -1,8 +1,8 @@
 """Changes cells in the XML of a worksheet; all bytes outside the changed rows stay as they are.
 
-A library that reads a workbook and writes it again loses what it does not know: pictures, charts,
-and what newer programs have added. So a parser finds where rows and cells stand in the XML, and
-only the rows with changed cells are written anew.
+A library that reads a workbook and writes it again loses the parts that it can't handle: pictures,
+charts, and additions of newer programs. So a parser finds where rows and cells stand in the XML,
+and only the rows with changed cells are written anew.
 """
 
 import re
@@ -26,7 +26,7 @@ _NO_UTF_8 = re.compile(
 
 
 class NotEditable(Exception):
-    """The sheet can't be changed in place without losing something."""
+    """A part of the workbook can't be changed without the loss of something."""
 
 
 @dataclass

@@ -172,7 +172,7 @@ class _Edit:
         return made(text)._replace(style=style)
 
     def _unshared(self, contents: Mapping[Place, Content]) -> dict[Place, Content]:
-        """Give a cell its own formula if it shares its formula with a cell that changes.
+        """Return formulas for cells that share a formula with a changed cell; each gets its own.
 
         Raises:
             NotEditable: if a changed cell is part of a formula over several cells.
@@ -211,8 +211,7 @@ class _Edit:
         The mirror sheet, which shows the table's cells by formulas, gets the new numbers as stored
         results, because programs that can't calculate read them.
 
-        Returns:
-            Whether there are such formulas.
+        Returns: Whether there are formulas that may depend on the table.
         """
         depend = self._dependent()
         for name, sheet in self._sheets.items():
@@ -269,7 +268,7 @@ def _translated(formula: str, origin: Place, place: Place) -> str:
 
 
 def _with_value(sheet: SheetXml, cell: XmlCell, value: str) -> Content:
-    """Return a cell's content with its formula and a stored result; "": no stored result."""
+    """Return a cell's content: its formula and a stored result. "": without a stored result."""
     assert cell.formula is not None
     p, kind = sheet.prefix, ""
     inner = sheet.raw(cell.formula.start, cell.formula.end)

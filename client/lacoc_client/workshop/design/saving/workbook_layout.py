@@ -23,11 +23,11 @@ class Layout:
     bottom: int
     """Row of the last posture before the change."""
     legend: tuple[int, int]
-    """First row of the legend, and the row after its last; (0, 0): there is no legend."""
+    """First row of the legend, and the row after its last row; (0, 0): there is no legend."""
     down: int
     """Number of rows by which the legend moves down."""
     wanted: Mapping[Place, str | float | None]
-    """New content of the table's cells: a text, a number, or None for an empty cell."""
+    """New content of each cell of the table: a text, a number, or None for an empty cell."""
 
 
 def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
@@ -112,7 +112,7 @@ def _place_new(place_of: dict[int, int], table: PostureTable, free: list[int]) -
 
 
 def _disorder(place_of: Mapping[int, int], key: int, row: int) -> int:
-    """Count the placed postures that would be in the wrong order with a new one.
+    """Count the placed postures that would be out of order if a new posture got a row.
 
     These are the postures above the new one with a larger key, and below it with a smaller key.
 

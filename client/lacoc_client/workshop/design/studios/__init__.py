@@ -1,1 +1,1 @@
-"""Connections to studios, which let robots walk: `asker` to one, `studios` to several."""
+"""Connections to studios, which let robots walk: `asker` to one studio, `studios` to several."""

@@ -1,4 +1,4 @@
-"""Finds a studio, sends it a page's requests, and tells the page how far a search is."""
+"""Finds a studio, sends it the requests of pages, and receives reports on its searches."""
 
 import asyncio
 import threading
@@ -55,7 +55,7 @@ class Asker:
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._look, name="studio", daemon=True)
         self.studio: str | None = None
-        """Name of the studio that was found; None: no studio was found."""
+        """Name of the studio that was found; None: none was found."""
         self.why: Phrase | None = None
         """Why no studio was found; None: one was found, or the thread has not looked yet."""
         self.open = 0
@@ -101,7 +101,7 @@ class Asker:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
     async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
-        """Call a function for each report on a search, on another thread, until `Listening.close`.
+        """Call a function on another thread for each report on a search, until it is closed.
 
         Raises:
             NotNow: if there is no studio.
@@ -110,7 +110,10 @@ class Asker:
         return Listening(session, keys.progress(job), tell)
 
     async def _found(self) -> tuple[Session, StudioKeys]:
-        """Return the session and the studio's keys; wait a moment for a studio that just starts."""
+        """Return the session and the studio's keys.
+
+        Wait a moment if the studio is just starting.
+        """
         deadline_s = time.monotonic() + _PATIENCE_S
         while True:
             session, studio = self._session, self.studio

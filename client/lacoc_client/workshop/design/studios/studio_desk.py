@@ -1,4 +1,4 @@
-"""Sends a page's requests to a studio: tables become files, and names of searches become unique."""
+"""Sends a page's requests to a studio; it makes files of tables, and unique names for searches."""
 
 import asyncio
 import secrets
@@ -39,7 +39,7 @@ _TRIAL_S = 120.0
 _CANCEL_S = 5.0
 _COACH_MOST_S = 3600.0
 _COACH_MORE_S = 300.0
-"""How much longer than its search time a reply may take [s]: the search may have to wait for
+"""A reply may come this much later than the search time [s]: the search may have to wait for
 others, and after it the coach undoes changes that hardly help."""
 
 
@@ -60,7 +60,10 @@ class StudioDesk:
         """Name of each search that runs -> the connection to the studio that runs it."""
 
     async def robot(self, asked: requests.RobotAsk) -> msgspec.Raw:
-        """Ask what a robot file describes; all methods here raise the errors of `Asker.ask`."""
+        """Ask the studio what a robot file describes.
+
+        All methods of this class raise the errors of `Asker.ask`.
+        """
         request = RobotRequest(protocol=PROTOCOL, robot=asked.robot)
         asker = self._studios.free()
         return msgspec.Raw((await asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
@@ -81,7 +84,7 @@ class StudioDesk:
             return await self._studios.free().ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
-        """Search for better numbers, and tell the page several times a second how far this is."""
+        """Let a studio search for better numbers, and report to the page several times a second."""
         request = CoachRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -95,7 +98,7 @@ class StudioDesk:
         return await self._search("coach", asked.job, request, CoachReply, asked.seconds)
 
     async def map(self, asked: requests.MapAsk) -> msgspec.Raw:
-        """Search for a map of gaits; the page is told as in `coach`."""
+        """Let a studio search for a map of gaits, and report to the page as in `coach`."""
         request = MapRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -107,7 +110,10 @@ class StudioDesk:
         return await self._search("map", asked.job, request, MapReply, asked.seconds)
 
     async def variants(self, asked: requests.VariantsAsk) -> msgspec.Raw:
-        """Search for six gaits that look different; the page is told as in `coach`."""
+        """Let a studio search for six gaits that look different.
+
+        Report to the page as in `coach`.
+        """
         request = VariantsRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -128,7 +134,7 @@ class StudioDesk:
         reply: type[CoachReply | MapReply | VariantsReply],
         seconds: float,
     ) -> msgspec.Raw:
-        """Have a studio search, and tell the page how far it is.
+        """Let a studio search, and report to the page how far the search is.
 
         Args:
             what: name of the request.
@@ -162,7 +168,7 @@ class StudioDesk:
     async def cancel(self, job: str) -> dict[str, Any]:
         """End a search of this page early, and return an empty reply.
 
-        The reply to the search itself has the best result so far.
+        The request that began the search is then answered with the best result so far.
         """
         await self._cancel(self._job(job))
         return {}
@@ -173,7 +179,7 @@ class StudioDesk:
         await asker.ask("cancel", request, Done, _CANCEL_S)
 
     def _job(self, name: str) -> str:
-        """Put the page's own mark before a search's name, so that no two pages use one name."""
+        """Return a name for a search that no other page uses: the page's mark, then its name."""
         return f"{self._page}-{name}"
 
 

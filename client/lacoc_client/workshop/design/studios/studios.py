@@ -28,7 +28,7 @@ class Studios:
 
     @property
     def present(self) -> int:
-        """Number of studios that are there."""
+        """Number of studios that can be reached now."""
         return sum(asker.studio is not None for asker in self._askers)
 
     @property

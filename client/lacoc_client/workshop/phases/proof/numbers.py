@@ -1,11 +1,11 @@
-"""Which numbers of a table are a student's own, and have changed since a phase began.
+"""Finds which numbers of a table are a student's own, and have changed since a phase began.
 
-A number is *typed* if the student typed it by hand into its cell, before the same number came
-there in another way. It is *made* if a tool or a paste brought it and the student had
-typed it for such a joint before. It is *given* if it came from the lesson of one leg, or is such a
-copy of one that did: it is welcome, and counts for nothing. Any other number is *foreign*: it was
-pasted, or it came with a file, from the coach, or from the teacher. Numbers of the robot's start
-posture are none of these.
+A number is *typed* if the student typed it by hand into its cell, before the same number came there
+in another way. It is *made* if a tool or a paste put it there, and the student had typed the same
+number for a joint of this level before. It is *given* if it came from the lesson of one leg, or is
+such a copy of a number from the lesson: it may be in the table, but is not counted. Any other
+number is *foreign*: it was pasted, or it came with a file, from the coach, or from the teacher.
+Numbers of the robot's start posture are none of these.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from typing import Literal
 from lacoc_client.workshop.phases.evidence import Edited, Evidence, Guessed, LegEdit, Tried
 
 NUMBER_DEG = 10.0
-"""A number counts if it changes a posture by so much since the phase began [deg]."""
+"""A number counts if it changes a posture by at least this since the phase began [deg]."""
 
 _Place = tuple[int, int, int, int]
 """Key, posture, leg and level of a cell."""
@@ -27,29 +27,30 @@ _COPIES = ("tool", "paste")
 
 
 def is_apart(one_deg: float, other_deg: float) -> bool:
-    """Return whether two angles differ so much that the change counts."""
+    """Return whether two angles differ enough for the change to count."""
     return round(abs(one_deg - other_deg), _DIGITS) >= NUMBER_DEG
 
 
 @dataclass(frozen=True)
 class OwnTrial:
-    """A trial, and whose the numbers of its rows are."""
+    """A trial, and how many numbers of its rows are typed, made and foreign."""
 
     tried: Tried
     typed: int
-    """How many numbers the student typed that differ by `NUMBER_DEG` from what was there before."""
+    """How many numbers were typed and differ by `NUMBER_DEG` from those that were in their cells
+    before."""
     made: int
-    """The same for numbers that were made from typed ones."""
+    """How many numbers were made from typed ones, and differ in the same way."""
     foreign: int
-    """How many numbers are foreign, whenever they came."""
+    """How many numbers are foreign, also those that did not change in this phase."""
 
 
 def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
-    """Find whose the numbers of each trial are.
+    """Find for each trial where the numbers of its rows came from.
 
     Args:
         evidence: all evidence of a student, in order.
-        start: trials and changes count from this index on.
+        start: trials and changes from this index on count.
     """
     cells, found = _Cells(), []
     for at, one in enumerate(evidence):
@@ -61,20 +62,26 @@ def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
 
 
 class _Cells:
-    """The cells of a table as edits have filled them."""
+    """The cells of a table, with the way in which each number came into them."""
 
     def __init__(self) -> None:
         self._sources: dict[tuple[_Place, float], _Source] = {}
         """How each number first came into a cell."""
         self._typed: set[tuple[int, float]] = set()
-        """The numbers that were typed for joints of a level, in any cell."""
+        """Each number that was typed by hand, in any cell, with the level of its joint."""
         self._given: set[tuple[int, float]] = set()
-        """Likewise those that came from the lesson."""
+        """Each number that came from the lesson, with the level of its joint."""
         self._base: dict[_Place, float | None] = {}
-        """What stood in each changed cell when counting began; None: the row is new."""
+        """The number in each changed cell before the first change that counts; None: the row is
+        new."""
 
     def take(self, edit: Edited, counts: bool) -> None:
-        """Take in an edit; `counts`: it belongs to the phase."""
+        """Note an edit.
+
+        Args:
+            edit: the edit.
+            counts: whether the edit belongs to the phase.
+        """
         for leg in edit.legs:
             for level in leg.changed:
                 place = (leg.key, leg.posture, leg.leg, level)
@@ -91,7 +98,7 @@ class _Cells:
                     self._base.setdefault(place, before)
 
     def judge(self, tried: Tried) -> OwnTrial:
-        """Return whose the numbers of a trial are."""
+        """Count how many numbers of a trial are typed, made and foreign."""
         counts = {"typed": 0, "made": 0, "foreign": 0}
         for number in tried.numbers:
             place = (number.key, number.posture, number.leg, number.level)
@@ -116,16 +123,17 @@ class _Cells:
 
 @dataclass(frozen=True)
 class LegNumbers:
-    """What a student typed for one leg."""
+    """How much a student has typed for one leg."""
 
     joints: int
-    """How many of its three joints were turned by `NUMBER_DEG` at least."""
+    """How many of the leg's three joints were turned by at least `NUMBER_DEG`."""
     postures: int
-    """How many postures differ from each other, and from the first one, by `NUMBER_DEG`."""
+    """How many postures of the leg differ by `NUMBER_DEG` from each other and from the first
+    one."""
 
 
 def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
-    """Return what a student typed for each leg."""
+    """Return for each leg how much a student has typed."""
     joints: dict[int, set[int]] = {}
     postures: dict[int, list[tuple[float, ...]]] = {}
     for leg in _typed_legs(evidence):
@@ -141,7 +149,7 @@ def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
     """Return the guesses of where a foot goes that count, in order.
 
     A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
-    seen before where this joint brings this foot in this direction.
+    seen before where the foot goes if this joint turns in this direction.
 
     Args:
         evidence: all evidence of a student, in order.
@@ -164,7 +172,7 @@ def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
 
 
 def _moves(edit: Edited) -> set[_Move]:
-    """Return how joints were turned by hand, so that the student saw where feet go."""
+    """Return which joints an edit by hand turned, and how: moves that the student has seen."""
     if edit.by != "hand":
         return set()
     return {
@@ -177,7 +185,7 @@ def _moves(edit: Edited) -> set[_Move]:
 
 
 def _typed_legs(evidence: Sequence[Evidence]) -> list[LegEdit]:
-    """Return the edits by hand of legs that were there before."""
+    """Return the edits by hand, except of rows that were new."""
     edits = (one for one in evidence if isinstance(one, Edited) and one.by == "hand")
     return [leg for edit in edits for leg in edit.legs if leg.before_deg]
 

@@ -1,6 +1,6 @@
 """A phase of the workshop: its task, the work that it asks for, and its question.
 
-A phase begins when the student comes to it. It is done when its work is done, and its question is
+A phase begins when the student goes to it. It is done when its work is done and its question is
 answered right. After a wrong answer a little more work leads to another question.
 """
 
@@ -15,31 +15,31 @@ from lacoc_client.workshop.phases.proof.work import Work
 from lacoc_shared.words import Phrase, say
 
 _LESSON, _FIRST = 0, 1
-"""Numbers of the lesson, and of the phase with which a student begins."""
+"""Number of the lesson, and of the phase in which a student begins."""
 _WORK_SHARE, _ASKED_SHARE = 0.8, 0.9
-"""Part of a phase that its work is, and part that is done once its question was asked."""
+"""Share of a phase that is done when its work is done, and when its question has been asked."""
 
 
 @dataclass(frozen=True)
 class WorkshopPhase:
-    """One step of the workshop."""
+    """A phase: one of the steps of the workshop."""
 
     number: int
-    """From 0 to 6."""
+    """Number of the phase, from 0 to 6."""
     title: Phrase
     task: Phrase
     question: Phrase
-    """A question that makes a student think before trying."""
+    """A question to think about before the task; it needs no answer."""
     hint: Phrase
     explanation: Phrase
-    """What a student should have understood after the task."""
+    """The explanation that a student should understand after the task."""
     work: Work
     asks: Callable[[Sequence[Evidence], int], PhaseQuestion]
-    """Makes the question from the evidence with which the work was done; the number says how many
-    questions of the phase were answered wrong."""
+    """Makes the question that the student must answer. It takes the evidence with which the work
+    was done, and how many questions of the phase were answered wrong."""
 
     def look(self, evidence: Sequence[Evidence]) -> tuple[Outcome, PhaseQuestion | None]:
-        """Return how far a student is, and the question that waits for an answer, if one does.
+        """Return how far a student is in this phase, and the question to answer now, if any.
 
         Args:
             evidence: all evidence of the student, in order.
@@ -63,7 +63,12 @@ class WorkshopPhase:
         return Outcome(_ASKED_SHARE, (say("phases.answer"),)), question
 
     def may_change(self, known: PhaseQuestion | None, new: Sequence[Evidence]) -> bool:
-        """Return whether new evidence may change what `look` returns; `known` is its question."""
+        """Return whether new evidence may change what `look` returns.
+
+        Args:
+            known: the question that `look` has returned; None: none.
+            new: the new evidence.
+        """
         if known is not None:
             return any(isinstance(one, Answered) and one.phase == self.number for one in new)
         return any(
@@ -74,7 +79,10 @@ class WorkshopPhase:
         )
 
     def _begins(self, evidence: Sequence[Evidence]) -> int | None:
-        """Return the index of the first evidence that belongs to the phase; None: not there yet."""
+        """Return the index of the first evidence that belongs to the phase.
+
+        None: the student has not begun this phase.
+        """
         if self.number == _FIRST:
             return 0
         for at, one in enumerate(evidence):
@@ -85,7 +93,10 @@ class WorkshopPhase:
         return None
 
     def _done(self, evidence: Sequence[Evidence], start: int, again: bool) -> int:
-        """Return how much of the evidence is enough for the work, which is done."""
+        """Return how many pieces of evidence were needed until the work was done.
+
+        The work must be done.
+        """
         # Work that is done stays done, so bisection finds when that was.
         counts = range(start, len(evidence) + 1)
         return start + bisect_left(

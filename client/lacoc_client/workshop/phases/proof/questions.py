@@ -14,10 +14,10 @@ from lacoc_shared.words import Phrase, say
 
 _LEVELS = ("Root", "1st", "2nd")
 _LINKS_MM = (15.0, 70.0, 70.0)
-"""Lengths of the links of the workshop's robot."""
+"""Lengths of the links of the workshop's robot [mm]."""
 _FIRST_DEG, _SECOND_DEG = (10, 30, 40, 50), (-35, -20, 20, 35)
 TURNS_DEG_S = 5.0
-"""A robot that turns at least this fast turns (docs/studio.md 7)."""
+"""A robot that turns at least this fast counts as turning [deg/s] (docs/studio.md 7)."""
 
 _OPPOSITE: dict[FootWay, FootWay] = {
     "forward": "back",
@@ -54,11 +54,11 @@ class PhaseQuestion:
     right: frozenset[int]
     """Indices of the right choices."""
     because: Phrase
-    """Why these are right."""
+    """An explanation of the right choices."""
 
 
 def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where a foot is, at angles that follow from what the student answered in the lesson."""
+    """Ask where a foot is, at angles that depend on the student's answers in the lesson."""
     seed = crc32(repr((turn, [one for one in seen if isinstance(one, TookStep)])).encode())
     first = _FIRST_DEG[seed % len(_FIRST_DEG)]
     second = _SECOND_DEG[seed // len(_FIRST_DEG) % len(_SECOND_DEG)]
@@ -83,7 +83,7 @@ def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where another change of the last guessed joint brings a foot."""
+    """Ask where a foot goes after another change of the joint of the student's last guess."""
     guess = foot_guesses(seen)[-1]
     joint, leg = _LEVELS[guess.level], _label(guess.of_legs, guess.leg)
     way = _WAYS.get(_main_way(guess), say("phases.way-still"))
@@ -118,7 +118,7 @@ def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask what the margin of the trial is, or which feet carried the robot."""
+    """Ask what the support margin of the trial means, or which feet carried the robot."""
     facts = _last_trial(seen).facts
     seed = len(seen)
     if turn % 2 == 0 and facts.margin_mm is not None:
@@ -206,7 +206,7 @@ def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask what of the walk differs from the sample, or how long its cycle lasts."""
+    """Ask in what the walk differs from that with the sample, or how long its cycle lasts."""
     periods_s = [one.facts.cycle_s for one in seen if isinstance(one, Tried) and one.facts.cycle_s]
     compared = [one.differs for one in seen if isinstance(one, Compared)]
     differs = compared[-1] if compared else ()
@@ -265,7 +265,10 @@ def keys_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 def _made(
     name: str, ask: Phrase, choices: Sequence[Phrase], right: int, because: Phrase, seed: int
 ) -> PhaseQuestion:
-    """Make a question; the first `right` choices are right, and `seed` mixes all."""
+    """Make a question from choices of which the first `right` are right.
+
+    `seed` mixes their order.
+    """
     order = sorted(range(len(choices)), key=lambda at: crc32(f"{name} {seed} {at}".encode()))
     return PhaseQuestion(
         name=name,
@@ -277,7 +280,7 @@ def _made(
 
 
 def _ways(name: str, ask: Phrase, right: Sequence[FootWay], because: Phrase) -> PhaseQuestion:
-    """Ask for a direction of a foot; the choices stand in their usual order."""
+    """Make a question about the direction of a foot; the choices stand in their usual order."""
     places = frozenset(place for place, way in enumerate(_WAYS) if way in right)
     return PhaseQuestion(name, ask, tuple(_WAYS.values()), places, because)
 

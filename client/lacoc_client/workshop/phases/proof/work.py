@@ -39,11 +39,11 @@ _TRY = say("phases.try")
 
 
 class Work(Protocol):
-    """What a student must do before the question of a phase is asked."""
+    """The work that a student must do before the question of a phase is asked."""
 
     @property
     def kinds(self) -> tuple[type, ...]:
-        """The kinds of evidence that may change how much is done, when they are the newest."""
+        """The kinds of evidence that may change how much of the work is done."""
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return how much of the work is done. More evidence never makes it less.
@@ -58,12 +58,15 @@ class Work(Protocol):
 
 
 class LessonWork:
-    """Answer each question of the lesson of one leg, for one robot, and come to its end."""
+    """Work: answer each question of the lesson of one leg, for one robot, and reach its end."""
 
     kinds = (TookStep,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Count the steps that are done; for another question one new answer is enough."""
+        """Count the steps that are done.
+
+        After a wrong answer to the question one new answer is enough.
+        """
         if again:
             new = sum(isinstance(one, TookStep) and one.question >= 0 for one in evidence[start:])
             return counted(min(new, 1), 1, lambda left: say("phases.step-again"))
@@ -72,7 +75,7 @@ class LessonWork:
 
 
 def lesson_steps(evidence: Sequence[Evidence]) -> set[int]:
-    """Return which steps of the lesson are done, for the robot with which most are done."""
+    """Return which steps of the lesson are done, for the robot for which most steps are done."""
     answers: dict[str, dict[int, set[int]]] = {}
     done: dict[str, set[int]] = {}
     for one in evidence:
@@ -88,17 +91,20 @@ def lesson_steps(evidence: Sequence[Evidence]) -> set[int]:
 
 @dataclass(frozen=True)
 class LegWork:
-    """Turn all three joints of a leg, and guess before where its foot goes."""
+    """Work: turn all three joints of a leg, and guess each time where its foot goes."""
 
     joints: int
     postures: int
     guesses: int
     right: int
-    """How many of `guesses` guesses in a row must be right."""
+    """How many of `guesses` guesses in a row must have been right."""
     kinds: ClassVar = (Edited, Guessed)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Count joints, postures and guesses; for another question one right guess is enough."""
+        """Count joints, postures and guesses.
+
+        After a wrong answer one new right guess is enough.
+        """
         guesses = foot_guesses(evidence, start)
         if again:
             one_more = LastOf(foot_guess, 1, 1, lambda left: say("phases.guess-again"))
@@ -127,17 +133,17 @@ class LegWork:
 
 @dataclass(frozen=True)
 class TrialWork:
-    """Make a trial that keeps all limits, in rows whose numbers are one's own."""
+    """Work: make a trial that keeps all limits, in rows with the student's own numbers."""
 
     bounds: tuple[Bound, ...]
     numbers: int
-    """How many numbers must be new since the phase began."""
+    """How many numbers must be the student's own and changed since the phase began."""
     tools: bool = False
-    """Whether numbers count that a tool made from own ones."""
+    """Whether numbers count that a tool made from the student's own."""
     kinds: ClassVar = (Tried,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Return the outcome of the best trial; for another question one new number is enough."""
+        """Return the outcome of the best trial; after a wrong answer one new number is enough."""
         trials = own_trials(evidence, start)
         outcomes = [self._judged(one, again) for one in reversed(trials)]
         lacks = (_one_more(1),) if again else (self._more_numbers(self.numbers), _TRY)
@@ -162,16 +168,16 @@ class TrialWork:
 
 @dataclass(frozen=True)
 class VersionWork:
-    """Show something with one version of the table, in which some numbers are one's own."""
+    """Work: show something with one version of the table that has numbers of the student's own."""
 
     shown: Predicate
     numbers: int
     beside: tuple[Predicate, ...] = ()
-    """Rules that have nothing to do with a version of the table."""
+    """Further rules, which may be met with any version of the table."""
     kinds: ClassVar = (Tried, CheckedGait, Compared, Named, Voted)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Return the outcome of the best version; for another question a new trial is enough."""
+        """Return the outcome of the best version; after a wrong answer a new trial is enough."""
         trials = own_trials(evidence, start)
         if again:
             own = max((one.typed for one in trials), default=0)
