@@ -18,12 +18,12 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option --long, with which `make test-long` runs pytest."""
+    """Add the option --long, with which `make test-all` runs pytest."""
     parser.addoption(
         "--long",
         action="store_true",
-        help="run what a usual run leaves out: tests marked long, and properties of three times as "
-        "many examples",
+        help="run also the tests marked long, and check each property with three times as many "
+        "examples",
     )
 
 
@@ -40,17 +40,19 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Select the tests of this run, and let those that take minutes begin first.
-
-    With --long, run tests marked long and all property tests; without it, tests not marked long.
-    """
-    wanted, others = [], []
-    for item in items:
-        long = item.get_closest_marker("long") is not None
-        again = config.getoption("long") and item.get_closest_marker("hypothesis") is not None
-        (wanted if long is config.getoption("long") or again else others).append(item)
-    config.hook.pytest_deselected(items=others)
+    """Leave out tests marked long, unless --long is given; begin with those that take minutes."""
+    long = {item for item in items if item.get_closest_marker("long")}
+    others = set() if config.getoption("long") else long
+    config.hook.pytest_deselected(items=[item for item in items if item in others])
+    wanted = [item for item in items if item not in others]
     items[:] = spread(wanted, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Print why tests failed that ran once more."""
+    for report in terminalreporter.getreports("rerun"):
+        terminalreporter.write_sep("_", f"first run of {report.nodeid}")
+        terminalreporter.write_line(report.longreprtext)
 
 
 def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
