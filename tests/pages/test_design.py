@@ -244,6 +244,7 @@ def test_a_beginner_s_first_gait(
     assert actions <= 60
 
 
+@pytest.mark.long
 def test_the_coach_works_and_can_be_stopped(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -642,6 +643,7 @@ def test_a_page_that_comes_while_the_studio_stands_still_opens_by_itself(
         page.misses(".banner")
 
 
+@pytest.mark.long
 def test_trials_outlive_a_reload_and_an_outage(
     open_page: OpenPage, tmp_path: Path, console: Any
 ) -> None:

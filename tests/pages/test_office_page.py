@@ -344,6 +344,7 @@ def waiting(built_pages: Path, tmp_path: Path) -> Iterator[Event]:
         yield event
 
 
+@pytest.mark.long
 def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> None:
     """When the groups are over, the organiser sees who is in the finals, and draws them."""
     office = open_page(viewport=LAPTOP)

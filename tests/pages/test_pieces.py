@@ -38,6 +38,7 @@ class Ways:
         self.messages += 1
 
 
+@pytest.mark.long
 def test_nobody_is_sent_away(venue: Venue, open_page: OpenPage, console: Any) -> None:
     """A page without a place sees the match in pieces, and moves back and forth in its middle."""
     console.expect_a_break()

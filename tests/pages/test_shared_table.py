@@ -19,6 +19,7 @@ from waiting import until
 pytestmark = pytest.mark.slow
 
 
+@pytest.mark.long
 def test_two_windows_at_one_folder_lose_nothing(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:

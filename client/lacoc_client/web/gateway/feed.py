@@ -29,9 +29,9 @@ _RETRY_S = 1.0
 _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
 _TRIP_S = 1.0
+"""Time between two measurements of the way to the court, however many pages want to know."""
 _JOINED_S = 3.0
 """Longest wait of `joined` for a court that is not connected yet [s]."""
-"""Time between two measurements of the way to the court, however many pages want to know."""
 
 
 class CourtFeed:
