@@ -18,7 +18,7 @@ from lacoc_server.contest.league.timetable.calling import (
     wanted,
 )
 from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 
 def called(cup: Cup, court: str = "north") -> Called:
@@ -77,12 +77,14 @@ def test_the_result_of_a_call_is_taken_once() -> None:
     """A result counts once, if its court shows the call and the end of the match."""
     cup = Cup()
     call = called(cup)
-    end = GameEnd((20, 16), "left", "x.mcap")
+    late = (say("health.late-beat", late_ms=300.0, most_ms=200.0),)
+    end = GameEnd((20, 16), "left", "x.mcap", late)
     assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, "f1", True, end)}))
     assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True)}))
     (played,) = results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True, end)})
     assert isinstance(played, Played)
     assert (played.teams, played.scores, played.record) == (call.teams, (20, 16), "x.mcap")
+    assert played.advice == late
     cup.append(played)
     assert not list(results(cup.contest, {"north": SeenCourt(NOW_MS, call.id, True, end)}))
 

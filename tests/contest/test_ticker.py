@@ -58,8 +58,12 @@ def test_a_contest_is_told_line_by_line() -> None:
         "Void, to be played again: t001 – t002. Final, game 1 of 3.",
         "Result: t001 9 : 4 t002. Final, game 1 of 3.",
     ]
-    event.add(Played, **{**about, "game": 2, "scores": (9, 4), "outcome": "left"})
-    assert terminal.lines()[-1] == "The contest is over."
+    late = (say("health.late-beat", late_ms=300.0, most_ms=200.0),)
+    event.add(Played, **{**about, "game": 2, "scores": (9, 4), "outcome": "left", "advice": late})
+    *_, result, over = terminal.lines()
+    assert result.endswith("Decide on /office.")
+    assert render(late[0]) in result
+    assert over == "The contest is over."
     assert terminal.lines() == []
 
 

@@ -513,6 +513,17 @@ def test_nobody_steers_a_team_with_a_bot(played: Path) -> None:
     assert what.code == "verify.of-steer"
 
 
+def test_advice_that_no_court_gave_is_found(played: Path) -> None:
+    """A fact that names reasons for a rematch which the record does not have is found."""
+    folder = played / "published"
+    game = games_of(read(folder))[-1]
+    late = say("health.late-beat", late_ms=300.0, most_ms=200.0)
+    game = replace(game, played=replace(game.played, advice=(late,)))
+    (found,) = check_game(folder, game, proven=False, programs=True).wrong
+    assert isinstance(what := found.values["what"], Phrase)
+    assert what.code == "verify.of-advice"
+
+
 def test_facts_that_are_nested_too_deep_are_refused(tmp_path: Path) -> None:
     """Facts that no parser can unfold are an error for people, and no traceback."""
     deep = "[" * 100_000 + "]" * 100_000

@@ -37,7 +37,7 @@ from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import Entrant, WinnerOf
 from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import render
+from lacoc_shared.words import render, say
 
 FIRST = "s:w1.1"
 SCORE = {"scores": (0, 1), "outcome": "right"}
@@ -110,9 +110,12 @@ def test_a_corrected_game_keeps_its_record() -> None:
     facts = Facts("single-knockout", "ab")
     game = {"pairing": FIRST, "game": 1, "teams": ("a", "b")}
     facts.add(Called, court="north", at_ms=7000, **game)
-    facts.add(Played, scores=(3, 1), outcome="left", record="x.mcap", **game)
+    late = (say("health.late-beat", late_ms=300.0, most_ms=200.0),)
+    facts.add(Played, scores=(3, 1), outcome="left", record="x.mcap", advice=late, **game)
+    assert [counted.advice for counted in facts.match().games] == [late]
     facts.add(Replaced, **ABOUT, game=1, **SCORE)
     (counted,) = facts.match().games
+    assert counted.advice == (), "the organiser has decided"
     assert (counted.scores, counted.record) == ((0, 1), "x.mcap")
     assert (counted.court, counted.began_ms) == ("north", 7000)
     assert counted.ruled, "the result is not what was played"

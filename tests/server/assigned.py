@@ -151,9 +151,10 @@ class Office:
 
 
 def write_office_contest(path: Path) -> Path:
-    """Write the contest file of one court and its office."""
+    """Write the contest file of one court, whose every match is late, and its office."""
     path.write_text(f"""
-
+[health]
+worst_late_ms = 0.0
 [court.main]
 arena = "othello"
 listen = ["tcp/127.0.0.1:{free_port()}"]

@@ -24,6 +24,7 @@ from lacoc_client.play.asking import NotNow
 from lacoc_client.play.controller import Controller
 from lacoc_client.play.referee import RefereeClient
 from lacoc_client.play.team_way import where
+from lacoc_server.contest.league.advice import advice
 from lacoc_server.contest.live.court_link import CourtLink, Unanswered
 from lacoc_server.contest.live.record_copy import RecordCopy
 from lacoc_server.journal.replay import verify
@@ -126,6 +127,8 @@ def test_teams_play_what_is_assigned(waiting: Office, folder: Path) -> None:
     assert played.result is not None
     assert (played.result.teams, played.result.scores) == (result.teams, result.scores)
     assert played.result.official == result.outcome
+    assert "health.late-beat" in [reason.code for reason in result.advice]
+    assert result.advice == advice(played.events)
     *_, verdict = verify(played)
     assert isinstance(verdict, Verdict)
     assert verdict.kind is VerdictKind.SAME

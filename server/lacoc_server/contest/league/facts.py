@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, TypeVar
 import msgspec
 
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 VERSION = 1
 """Version of the layout of facts."""
@@ -213,6 +213,8 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     """Name of the bot that steered a team without one, in a game without a network; "": none did,
     or the fact is older.
     """
+    advice: tuple[Phrase, ...] = ()
+    """Why the court advised to play the game again; empty: it did not, or the fact is older."""
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):

@@ -17,6 +17,7 @@ from lacoc_server.contest.league.facts import (
     Voided,
 )
 from lacoc_server.contest.league.pairing import AnySource, Entrant, LoserOf, Pairing, WinnerOf
+from lacoc_shared.words import Phrase
 
 NOBODY = ""
 """Stands for the team of a place that is empty for ever."""
@@ -46,6 +47,9 @@ class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     """When that court was given it, in milliseconds since 1970, UTC; 0: nobody knows."""
     ruled: bool = False
     """Whether the organiser gave this result, in place of what was played."""
+    advice: tuple[Phrase, ...] = ()
+    """Why the court advised to play the game again; empty: it did not, or the organiser gave the
+    result."""
     fact: str
     """Id of the fact that says so."""
 
@@ -261,6 +265,7 @@ def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -
         began_ms=call.at_ms if call is not None else 0,
         ruled=isinstance(fact, Replaced),
         fact=fact.id,
+        advice=fact.advice if isinstance(fact, Played) else (),
     )
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from lacoc_server.contest.league.advice import advice
 from lacoc_shared import codec
 from lacoc_shared.codec import encode, message_hash
 from lacoc_shared.keyspace import KeySpace
@@ -97,6 +98,8 @@ class CourtResult(NamedTuple):
     """Points by seat, with the referee's adjustments; zeros if play never ended."""
     outcome: str
     """Id of the official winner's seat, "draw" or "void"."""
+    advice: tuple[Phrase, ...] = ()
+    """Why the court advised to play the match again; empty: it did not."""
 
 
 class CourtLink:
@@ -326,6 +329,7 @@ def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:
         teams=tuple(seat.team for seat in sheet.seats),
         scores=tuple(results[-1]["scores"]) if results else (0,) * len(sheet.seats),
         outcome=outcome,
+        advice=advice(events),
     )
 
 

@@ -172,7 +172,7 @@ class Office:
         if (result := link.result) is not None:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
-            ended = GameEnd((left, right), who, f"{result.match_id}.mcap")
+            ended = GameEnd((left, right), who, f"{result.match_id}.mcap", result.advice)
         begun, there = link.phase in _BEGUN, link.is_there
         heard_ms, call = self._heard_ms[name], link.call or ""
         return SeenCourt(heard_ms, call, begun, ended, there, link.missing)

@@ -14,6 +14,7 @@ from lacoc_server.contest.headless.pool import setup_of
 from lacoc_server.contest.kept.entries import ContestEntry, EntryFolder
 from lacoc_server.contest.kept.folder import hash_of
 from lacoc_server.contest.kept.publish import ENTRIES, RECORDS
+from lacoc_server.contest.league.advice import advice
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import AnyFact, Called, Planned, Played
 from lacoc_server.contest.league.fixture import named
@@ -286,6 +287,8 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
     same_score = no_score or result.scores == played.scores
     if not same_score or outcome(seats, result.official) != played.outcome:
         yield say("verify.of-result")
+    elif played.advice and advice(record.events) != played.advice:
+        yield say("verify.of-advice")
 
 
 def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:

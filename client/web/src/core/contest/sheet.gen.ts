@@ -109,6 +109,7 @@ export interface CountedGame {
   court?: string;
   began_ms?: number;
   ruled?: boolean;
+  advice?: Phrase[];
   fact: string;
 }
 

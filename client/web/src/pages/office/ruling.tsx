@@ -15,7 +15,7 @@ import {
   written,
 } from "../../core/contest/sheet";
 import type { Effect, OfficeView, Rule } from "../../core/desk";
-import { t } from "../../i18n";
+import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { matchTitle } from "../contest/words";
 import { Effects, Reason } from "./dialogs";
@@ -111,6 +111,14 @@ function Line({ sheet, view, match }: LineProps) {
         {matchTitle(sheet, match.pairing.id)}
         {how && ` · ${t(`contest.how.${how}`)}`}
       </span>
+      {match.games?.map(
+        ({ number, advice: reasons }) =>
+          reasons && (
+            <small key={number} class="warning">
+              {said({ code: "event.advised", values: { reasons } })}
+            </small>
+          ),
+      )}
     </span>
   );
 }

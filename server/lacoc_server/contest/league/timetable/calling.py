@@ -6,6 +6,7 @@ from typing import NamedTuple
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, Recalled, new
 from lacoc_server.contest.league.timetable.schedule import assign
+from lacoc_shared.words import Phrase
 
 LOST_MS = 20_000
 """A court that was not heard for this long loses its game."""
@@ -28,6 +29,8 @@ class GameEnd(NamedTuple):
     outcome: Outcome
     record: str
     """File name of the record."""
+    advice: tuple[Phrase, ...] = ()
+    """Why the court advised to play the game again; empty: it did not."""
 
 
 class SeenCourt(NamedTuple):
@@ -60,6 +63,7 @@ def results(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterator[AnyFact
                 scores=court.ended.scores,
                 outcome=court.ended.outcome,
                 record=court.ended.record,
+                advice=court.ended.advice,
             )
 
 

@@ -107,5 +107,6 @@ def _said(contest: Contest, fact: AnyFact) -> Phrase | None:
                 right=right,
                 points=points,
                 conceded=conceded,
+                reasons=fact.advice or None,
             )
     return None
