@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from msgspec.structs import replace
+
 from lacoc_client.play.link.event import FoundEvent, find
 from lacoc_shared.contest.access import Access
 from lacoc_shared.mistakes import UserError
@@ -89,7 +91,7 @@ def referee(link: str | None, court: str | None, connect: str | None, token: str
     Raises:
         UserError: if there is no token; also for the reasons of `one_court`.
     """
-    return with_token(one_court(link, court, connect, token))
+    return _with_token(one_court(link, court, connect, token))
 
 
 def contestant(
@@ -114,11 +116,11 @@ def contestant(
         UserError: if there is no token; also for the reasons of `courts`.
     """
     first, *others = courts(link, court, connect, token, authority).values()
-    addresses = [*first.others, *(at for one in others for at in one.addresses)]
-    return with_token(first.with_others(addresses))
+    further = (at for one in others for at in one.addresses)
+    return replace(_with_token(first), others=(*first.others, *further))
 
 
-def with_token(access: Access) -> Access:
+def _with_token(access: Access) -> Access:
     """Return the access unchanged, after a check that it has a token.
 
     Raises:

@@ -1,6 +1,5 @@
 """A client's way to a court: the court's addresses and certificate, and the client's own token."""
 
-from collections.abc import Sequence
 from typing import Self
 
 import msgspec
@@ -33,10 +32,6 @@ class Access(msgspec.Struct, frozen=True, kw_only=True):
     def watching(self) -> Self:
         """Return the access of a spectator to the same court."""
         return msgspec.structs.replace(self, seat="", token="")
-
-    def with_others(self, addresses: Sequence[str]) -> Self:
-        """Return this access with further addresses in place of those that it has."""
-        return msgspec.structs.replace(self, others=tuple(addresses))
 
     def of_seat(self, seat: str, token: str) -> Self:
         """Return the access of a seat at the same court."""
