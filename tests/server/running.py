@@ -90,7 +90,7 @@ class Party:
             for seat in ("left", "right")
         ]
         for controller in self.controllers:
-            controller.join()
+            controller.join(LIMIT_S)
             controller.ready()
         self.left = self.controllers[0]
         self.referee = RefereeClient(session, name, plan.secrets.referee(name))
