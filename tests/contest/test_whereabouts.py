@@ -117,6 +117,29 @@ def test_in_a_pause_without_an_end_nobody_knows_when() -> None:
     assert where(cup, {})["t001"].about_s == 600
 
 
+def test_who_plays_after_a_team_that_has_not_come_is_told() -> None:
+    """If a court waits for a team, nobody knows when its next game begins; the others hear why."""
+    cup = Cup(teams=6)  # three matches a round, two courts
+    calls = playing(cup)
+    late = cup.contest.running[0].teams[0]
+    team, other = cup.contest.stages[0].matches[2].teams
+
+    def there() -> Whereabouts:
+        seen = {one: SeenCourt(cup.now_ms, calls[one]) for one in ADDRESSES}
+        seen["north"] = seen["north"]._replace(missing=(late,))
+        pace = ContestPace(cup.now_ms, GAME)
+        return found_for(cup.contest, SeenCourts(seen, ADDRESSES), pace)[str(team)]
+
+    assert there().about_s is not None
+    cup.now_ms += 30_000
+    waits = there()
+    assert (waits.court, waits.about_s) == ("north", None)
+    assert faults(waits.said) == []
+    assert (
+        render(waits.said) == f"Court north, after a game that waits for {late}, against {other}."
+    )
+
+
 def test_how_long_a_team_waits() -> None:
     """A team that waits for a court hears which court is free next, and in how long."""
     cup = Cup(teams=6)  # three matches a round, two courts

@@ -13,7 +13,7 @@ from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
-from lacoc_server.contest.league.timetable.calling import SeenCourt
+from lacoc_server.contest.league.timetable.calling import absent
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
 from lacoc_server.contest.league.timetable.seeding import (
@@ -37,9 +37,6 @@ from lacoc_shared.messages.desk import (
     ToDraw,
     Undrawable,
 )
-
-_LATE_MS = 30_000
-"""A team that has not joined for this long after the call of its game has not come."""
 
 
 def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
@@ -187,7 +184,7 @@ def slots(contest: Contest, known: OfficeKnowledge) -> Iterator[Slot]:
             at_ms=call.at_ms,
             running=True,
             begun=seen is not None and seen.call == call.id and seen.begun,
-            absent=_absent(call, seen, known.pace.now_ms),
+            absent=absent(call, seen, known.pace.now_ms),
             moved=_moved(moves.get(call.pairing)),
         )
     coming = foreseen(contest, FORMATS)
@@ -204,12 +201,6 @@ def slots(contest: Contest, known: OfficeKnowledge) -> Iterator[Slot]:
             held=known.held.get((one.pairing.id, one.match.next_game)),
             moved=_moved(moves.get(one.pairing.id)),
         )
-
-
-def _absent(call: facts.Called, seen: SeenCourt | None, now_ms: int) -> tuple[str, ...]:
-    """Return the teams of a called game that should have come by now, and have not."""
-    is_late = now_ms - call.at_ms >= _LATE_MS
-    return seen.missing if seen is not None and seen.call == call.id and is_late else ()
 
 
 def _moved(move: facts.Moved | None) -> MatchMove | None:

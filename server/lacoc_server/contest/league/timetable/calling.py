@@ -10,7 +10,8 @@ from lacoc_shared.words import Phrase
 
 LOST_MS = 20_000
 """A court that was not heard for this long loses its game."""
-
+_LATE_MS = 30_000
+"""A team that has not joined for this long after the call of its game has not come."""
 
 OPEN_CALL = "open."
 """Begins the calls of open matches."""
@@ -142,6 +143,12 @@ def calls(
 def present(seen: Mapping[str, SeenCourt], now_ms: int) -> list[str]:
     """Return the courts that were heard within the last `LOST_MS`, in the order of `seen`."""
     return [name for name, court in seen.items() if now_ms - court.heard_ms < LOST_MS]
+
+
+def absent(call: Called, seen: SeenCourt | None, now_ms: int) -> tuple[str, ...]:
+    """Return the teams of a called game that should have come by now, and have not."""
+    is_late = now_ms - call.at_ms >= _LATE_MS
+    return seen.missing if seen is not None and seen.call == call.id and is_late else ()
 
 
 def wanted(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterable[Called]:

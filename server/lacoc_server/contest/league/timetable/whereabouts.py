@@ -28,7 +28,7 @@ from lacoc_server.contest.league.facts import (
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
-from lacoc_server.contest.league.timetable.calling import SeenCourt, present
+from lacoc_server.contest.league.timetable.calling import SeenCourt, absent, present
 from lacoc_server.contest.league.timetable.foreseen import Foreseen
 from lacoc_server.contest.league.timetable.schedule import (
     court_of,
@@ -134,7 +134,9 @@ def whereabouts(
             found[name] = _ended(contest, name, over=True)
         elif not team.gone and name in coming:
             view, match = coming[name]
-            found[name] = _waits(contest, name, view, match, begins.get(match.pairing.id), pace)
+            start = begins.get(match.pairing.id)
+            away = () if start is None else _away(contest, courts, start.court, pace.now_ms)
+            found[name] = _waits(contest, name, view, match, start, pace, away)
         elif not team.gone and may_come(contest, name):
             found[name] = Whereabouts(team=name, state="waits", said=_awaits_draw(contest))
         else:
@@ -199,18 +201,36 @@ def _waits(
     match: ContestMatch,
     start: ProbableStart | None,
     pace: ContestPace,
+    away: tuple[str, ...],
 ) -> Whereabouts:
-    """Say what a team waits for, if its next match is known."""
+    """Say what a team waits for, if its next match is known.
+
+    Args:
+        contest: the contest.
+        team: the team's name.
+        view: the stage of the match.
+        match: the match.
+        start: when it probably begins; None: nobody knows.
+        pace: how fast the contest goes.
+        away: the teams for which the match's court waits now.
+    """
     about = fixture(contest, view, match, max(1, match.next_game), stands=True)
     opponent = match.teams[match.teams[0] == team] or ""
     if start is None:
         said = say("team.awaits-opponent", fixture=about)
         return Whereabouts(team=team, state="waits", said=said, opponent=opponent, fixture=about)
-    about_s = None if contest.day.paused else _rounded_s(start.at_ms - pace.now_ms)
-    if opponent:
-        said = say("team.next", court=start.court, when=_when(about_s), opponent=opponent)
+    about_s: int | None = None
+    if contest.day.paused:
+        when = say("when.after-pause")
+    elif away:
+        when = say("when.absent", teams=away)
     else:
-        said = say("team.later", fixture=about, court=start.court, when=_when(about_s))
+        about_s = _rounded_s(start.at_ms - pace.now_ms)
+        when = _when(about_s)
+    if opponent:
+        said = say("team.next", court=start.court, when=when, opponent=opponent)
+    else:
+        said = say("team.later", fixture=about, court=start.court, when=when)
     return Whereabouts(
         team=team,
         state="waits",
@@ -411,10 +431,14 @@ def _rounded_s(time_ms: int) -> int:
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 
-def _when(about_s: int | None) -> Phrase:
-    """Say when a match begins; None: after a pause without an end."""
-    if about_s is None:
-        return say("when.after-pause")
+def _away(contest: Contest, courts: SeenCourts, court: str, now_ms: int) -> tuple[str, ...]:
+    """Return the teams that a court waits for, because they have not come to their game."""
+    calls = (call for call in contest.running if call.court == court)
+    return tuple(team for call in calls for team in absent(call, courts.seen.get(court), now_ms))
+
+
+def _when(about_s: int) -> Phrase:
+    """Say when a match begins."""
     if about_s <= _MOMENT_S:
         return say("when.moment")
     return say("when.minutes", minutes=max(1, round(about_s / 60)))
