@@ -111,6 +111,7 @@ def test_the_lesson_by_keyboard_ends_in_the_table(own: OwnPage, open_page: OpenP
     assert "leg=" not in page.url
 
 
+@pytest.mark.long
 def test_a_foot_is_dragged_by_touch_on_a_phone(own: OwnPage, open_page: OpenPage) -> None:
     """A finger drags the foot; every step fits a phone in Japanese and has no serious mistake."""
     page = open_page(viewport=PHONE, has_touch=True, is_mobile=True, locale="ja-JP")

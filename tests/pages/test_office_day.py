@@ -79,6 +79,7 @@ def bottom(page: Page, selector: str) -> float:
     return box["y"] + box["height"]
 
 
+@pytest.mark.long
 def test_a_day_is_steered_on_the_page(event: Event, open_page: OpenPage) -> None:
     """The organiser steers the day; everybody reads it, and the staff decide under their names."""
     office = open_page(viewport=LAPTOP)

@@ -64,6 +64,7 @@ def playing(venue: Venue, page: Contestant) -> PageClient:
     return other
 
 
+@pytest.mark.long
 def test_keys_are_tried_in_the_lobby(venue: Venue, sit: Sit) -> None:
     """In the lobby the own robot stands on the field and walks by keys, until Ready: alone."""
     page = seated(venue, sit)

@@ -216,6 +216,7 @@ def test_a_void_match_has_no_winner(venue: Venue, open_page: OpenPage) -> None:
     show.misses(STALE)
 
 
+@pytest.mark.long
 def test_the_last_moments_are_seen_again(venue: Venue, open_page: OpenPage) -> None:
     """A spectator goes back, stops, sees slow motion, and is live again; so does the score."""
     venue.court()
