@@ -1,4 +1,8 @@
-"""Reads one file of a record, message by message, in the order in which they were written."""
+"""Reads one file of a record, message by message, in the order in which they were written.
+
+A match has 50 messages a second. So this module itself finds them in the bytes of a file, as
+`lacoc_shared.record.writer` packs them; `mcap` reads the records of other kinds.
+"""
 
 import struct
 import zlib
@@ -9,11 +13,12 @@ from typing import Any, NamedTuple
 
 import msgspec
 import zstandard
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message, Statistics
+from mcap.records import Channel, Chunk, DataEnd, Statistics
 from mcap.records import Header as FileHeader
-from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
+from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import codec
@@ -41,10 +46,12 @@ DAMAGE = (
 _MAX_BYTES = 1 << 26
 """Largest message or chunk of a record [bytes]. The largest ones that courts write are a scene of
 about 30 kB and a chunk of 128 KiB."""
-_RECORD_HEAD_BYTES = 9
-"""Size of an MCAP record's opcode and length [bytes]."""
+_RECORD_HEAD = struct.Struct("<BQ")
+"""Layout of an MCAP record's head: opcode, and length of the content."""
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
+"""Layout of the head in a message's content: channel, sequence, log time, publish time."""
 _CRC_BYTES = 4
-_ENDING_BYTES = _RECORD_HEAD_BYTES + 16 + _CRC_BYTES + len(MCAP0_MAGIC)
+_ENDING_BYTES = _RECORD_HEAD.size + 16 + _CRC_BYTES + len(MCAP0_MAGIC)
 """Size of the footer, whose last field is the checksum of the summary, and of the magic bytes after
 it [bytes]."""
 _UNPACKED_BYTES, _UNPACKED_RATIO = 1 << 22, 50
@@ -142,24 +149,26 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
         raise UserError(say("recording.not-mcap", file=str(path)))
     beat, whole, count = -1, len(MCAP0_MAGIC), 0
     topics: dict[int, str] = {}
-    file = BytesIO(data)
     try:
-        for record in _records(file, len(data)):
-            if isinstance(record, Message):
-                topic = topics[record.channel_id]
-                beat = _next_beat(beat, record.log_time // BEAT_NS, topic)
-                take(topic, beat, record.data)
+        for at, end, opcode, source, first, last in _records(data):
+            if opcode == Opcode.MESSAGE:
+                channel, _, time_ns, _ = _MESSAGE_HEAD.unpack_from(source, first)
+                topic = topics[channel]
+                beat = _next_beat(beat, time_ns // BEAT_NS, topic)
+                take(topic, beat, source[first + _MESSAGE_HEAD.size : last])
                 count += 1
-            elif isinstance(record, Channel):
-                topics[record.id] = record.topic
-            elif isinstance(record, DataEnd):
-                return _damaged_index() if _is_index_damaged(data, file.tell()) else None
-            elif isinstance(record, FileHeader) and record.profile != PROFILE:
+            elif opcode == Opcode.CHANNEL:
+                found = Channel.read(_stream(source[first:last]))
+                topics[found.id] = found.topic
+            elif opcode == Opcode.DATA_END:
+                checksum = DataEnd.read(_stream(source[first:last])).data_section_crc
+                if checksum not in (0, zlib.crc32(data[:at])):
+                    return _damaged_data(data, end, count)
+                return _damaged_index() if _is_index_damaged(data, end) else None
+            elif opcode == Opcode.HEADER and _profile(source[first:last]) != PROFILE:
                 raise UserError(say("recording.other-mcap", file=str(path)))
-            whole = file.tell()
+            whole = end
     except DAMAGE as error:
-        if isinstance(error, CRCValidationError) and isinstance(error.record, DataEnd):
-            return _damaged_data(data, file.tell(), count)
         if not _is_cut(data, whole):
             lost, told = len(data) - whole, printable(str(error), 200)
             fault = say("cut.damaged", byte=whole, bytes=len(data), error=told, lost=lost)
@@ -222,7 +231,7 @@ def _is_packed(data: bytes) -> bool:
     """Return whether a file's messages are in chunks, as in a packed file."""
     at = len(MCAP0_MAGIC)
     while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
-        at += _RECORD_HEAD_BYTES + int.from_bytes(data[at + 1 : at + 9], "little")
+        at += _RECORD_HEAD.size + int.from_bytes(data[at + 1 : at + 9], "little")
     return data[at : at + 1] == bytes([Opcode.CHUNK])
 
 
@@ -230,8 +239,8 @@ def _is_cut(data: bytes, at: int) -> bool:
     """Return whether a file ends in the middle of the MCAP record that begins at byte `at`."""
     if data.endswith(MCAP0_MAGIC) and len(data) > at + len(MCAP0_MAGIC):
         return False
-    length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD_BYTES], "little")
-    return len(data) < at + _RECORD_HEAD_BYTES + length <= at + _MAX_BYTES
+    length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD.size], "little")
+    return len(data) < at + _RECORD_HEAD.size + length <= at + _MAX_BYTES
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:
@@ -245,23 +254,72 @@ def _next_beat(before: int, beat: int, topic: str) -> int:
     return beat
 
 
-def _records(file: BytesIO, size: int) -> Iterator[McapRecord]:
+class _Found(NamedTuple):
+    """An MCAP record, perhaps in a chunk."""
+
+    at: int
+    """Byte of the file at which it begins, or its chunk."""
+    end: int
+    """Byte of the file at which it ends, or its chunk."""
+    opcode: int
+    source: bytes
+    """The file, or the unpacked chunk."""
+    first: int
+    """Byte of `source` at which its content begins."""
+    last: int
+    """Byte of `source` at which its content ends."""
+
+
+def _records(data: bytes) -> Iterator[_Found]:
     """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
 
     Raises:
         McapError: if a chunk is too large, or has a compression that LACOC does not use. If the
             file is damaged, other errors of `DAMAGE`.
     """
-    left = _UNPACKED_BYTES + _UNPACKED_RATIO * size
-    reader = StreamReader(file, validate_crcs=True, record_size_limit=size, emit_chunks=True)
-    for record in reader.records:
-        if not isinstance(record, Chunk):
-            yield record
-            continue
-        left -= _unpacked_bytes(record)
-        if left < 0:
-            raise McapError("it unpacks to more than a match has")
-        yield from breakup_chunk(record, validate_crc=True)
+    left = _UNPACKED_BYTES + _UNPACKED_RATIO * len(data)
+    at = len(MCAP0_MAGIC)
+    for opcode, first, last in _split(data, at):
+        if opcode == Opcode.CHUNK:
+            chunk = Chunk.read(_stream(data[first:last]))
+            left -= _unpacked_bytes(chunk)
+            if left < 0:
+                raise McapError("it unpacks to more than a match has")
+            stream, size = get_chunk_data_stream(chunk, validate_crc=True)
+            source = stream.read(size)
+            for inner, begin, end in [*_split(source)]:  # all of a chunk, or nothing
+                if inner in (Opcode.CHANNEL, Opcode.MESSAGE):
+                    yield _Found(at, last, inner, source, begin, end)
+        else:
+            yield _Found(at, last, opcode, data, first, last)
+        at = last
+
+
+def _split(data: bytes, at: int = 0) -> Iterator[tuple[int, int, int]]:
+    """Yield the opcode of each MCAP record in bytes, and where its content begins and ends.
+
+    Raises:
+        McapError: if a record is not complete.
+    """
+    while at < len(data):
+        if len(data) - at < _RECORD_HEAD.size:
+            raise McapError("a record ends in its head")
+        opcode, length = _RECORD_HEAD.unpack_from(data, at)
+        first = at + _RECORD_HEAD.size
+        at = first + length
+        if at > len(data):
+            raise McapError(f"a record of {length} bytes is longer than the file")
+        if opcode == Opcode.MESSAGE and length < _MESSAGE_HEAD.size:
+            raise McapError("a message ends in its head")
+        yield opcode, first, at
+
+
+def _profile(header: bytes) -> str:
+    return str(FileHeader.read(_stream(header)).profile)
+
+
+def _stream(content: bytes) -> ReadDataStream:
+    return ReadDataStream(BytesIO(content))
 
 
 def _unpacked_bytes(chunk: Chunk) -> int:
