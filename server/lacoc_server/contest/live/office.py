@@ -158,7 +158,7 @@ class Office:
         self.known = OfficeKnowledge(seen, self._teller.pace, dict(self.held))
 
     def _may_draw(self, now_ms: int) -> bool:
-        """Return whether teams have had their time to enter, and there are enough of them."""
+        """Return whether the office may draw: entries are closed, or it is time to close them."""
         if self.contest.closed:
             return True
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
@@ -263,7 +263,7 @@ class Office:
                 self._open_matches.look(link, now_ms)
 
     def _may_ask(self, call: str, now_ms: int) -> bool:
-        """Return whether a court can be asked about a call: at most once a second."""
+        """Return whether a court may be asked about a call again: at most once a second."""
         if call in self._asked or now_ms - self._asked_ms.get(call, 0) < _AGAIN_MS:
             return False
         self._asked_ms[call] = now_ms

@@ -81,7 +81,7 @@ class OpenMatches:
     def whereabouts(
         self, seen: Mapping[str, SeenCourt], addresses: Mapping[str, str]
     ) -> Iterator[tuple[str, Whereabouts]]:
-        """Yield for each open seat its token, and where it is or that it waits.
+        """Yield for each open seat its token, and either its open match or that it waits for one.
 
         Args:
             seen: the courts.

@@ -70,7 +70,7 @@ def _foreseen(
 
 
 def _is_to_come(match: ContestMatch) -> bool:
-    """Return whether a match will be played; a place that stays empty makes none of it."""
+    """Return whether a match will be played, as far as is known: not decided, without a bye."""
     conditional = match.pairing.only_if_second_won
     return not (match.decided or conditional or NOBODY in match.teams)
 
