@@ -1,4 +1,4 @@
-"""A game of a published contest: its result is compared with its record, and that is proven."""
+"""Checks a game of a published contest: compares its result with its record, which it proves."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -218,7 +218,7 @@ def _proven(
 
 
 def _arena(game: GameToCheck) -> Arena:
-    """Load the arena of a game; an installed one alone, because facts must not name code to run.
+    """Load the arena of a game if it is installed; facts must not be able to name code to run.
 
     Raises:
         UserError: if it is not installed, or its settings are wrong.
@@ -293,7 +293,7 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
 
 
 def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:
-    """Return whether a record is of the court of the call; or without a call, of no court."""
+    """Return whether a record is from the court of the call; without a call, from no court."""
     if game.call is not None:
         return setup.court == game.call.court
     wanted = setup_of(setup.match_id, arena, setup.limits)

@@ -68,7 +68,7 @@ def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
 
 
 def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield the first fact of an earlier publication that is missing or different now."""
+    """Yield the first fact of an earlier publication that is missing or different now, if any."""
     for before, now in zip(earlier, (*facts, *(None,) * len(earlier)), strict=False):
         if before != now:
             yield say("verify.rewritten", fact=before.id)
