@@ -304,10 +304,7 @@ def _ended(path: Path) -> Summary | None:
 def _result(
     game: _DueGame, folder: ContestFolder, facts: tuple[AnyFact, ...]
 ) -> Played | Replaced | None:
-    """Return the result of a game as a fact, from its record.
-
-    None: there is no record with a result.
-    """
+    """Return the fact of a game's result, from its record; None: no record has a result."""
     path = packed_path(folder.records, game.job.match_id)
     found = _ended(path)
     if found is None:

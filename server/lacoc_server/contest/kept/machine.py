@@ -19,7 +19,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     role: Literal["office", "copy", "retired"] = "office"
     """office: the contest is run here. copy: another machine's office is copied here. retired: the
-    office went on at another machine; the facts here end when it did."""
+    office went on at another machine, and no more facts are appended here."""
     office: str = ""
     """For a copy: address of the office that is copied."""
     known: tuple[str, ...] = ()

@@ -123,7 +123,7 @@ class FactStore:
     def bodies(self, after: int, most_bytes: int) -> list[str]:
         """Read the stored text of facts, in their order.
 
-        If there is a next fact, at least that one.
+        The first of them is read whatever its length.
 
         Args:
             after: number of the fact after which to begin.

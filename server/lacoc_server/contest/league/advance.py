@@ -100,7 +100,7 @@ def _is_tied(table: Table, row: Standing, behind: Standing) -> bool:
 def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) -> Standing | None:
     """Find the best team with the same place in another group that does not go on.
 
-    None: there is none.
+    Return None if there is no such team.
     """
     place = next(there for there, row in _placed(own) if row.team == team)
     same = (

@@ -177,7 +177,7 @@ class Changes(msgspec.Struct, frozen=True, kw_only=True):
     ranks: tuple[tuple[str, str, int, int], ...]
     """Each team with another rank: stage, team, rank before and after."""
     leaving: tuple[str, ...]
-    """The teams that have left the contest after, but not before."""
+    """The teams that take part in the contest before, and have left it in the contest after."""
 
 
 def changes(before: Contest, after: Contest) -> Changes:

@@ -20,7 +20,8 @@ from lacoc_server.contest.league.pairing import AnySource, Entrant, LoserOf, Pai
 from lacoc_shared.words import Phrase
 
 NOBODY = ""
-"""Stands in place of a team in a place of a pairing that stays empty, or that no team won."""
+"""Stands for the team of a place that stays empty, and for the winner of a match that nobody
+won."""
 
 Team = str | None
 """A team's name. NOBODY: no team. None: the team is not known yet."""
@@ -250,10 +251,7 @@ def counting(
 
 
 def fact_teams(fact: OfMatch) -> tuple[str, ...]:
-    """Return both teams that a fact about a match names.
-
-    Empty: this kind of fact has no `teams`.
-    """
+    """Return both teams that a fact names in `teams`; a fact without this field gives ()."""
     return getattr(fact, "teams", ())
 
 

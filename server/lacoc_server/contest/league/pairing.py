@@ -47,7 +47,8 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     winner_place: int | None = None
     """Final rank of the winner in the stage; None: this pairing does not decide it."""
     loser_place: int | None = None
-    """Best final rank of the teams that leave the stage in this round; None: no knockout."""
+    """Best final rank of the teams that leave the stage in this round; None: the stage is no
+    knockout."""
     loser_goes_on: bool = False
     """True: the loser has another match. So teams leave the stage here only if nobody wins."""
     only_if_second_won: str = ""

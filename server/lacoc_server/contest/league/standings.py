@@ -66,7 +66,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _Tally:
-    """Numbers of each team, counted from the matches: points, games scored, and so on."""
+    """Numbers of each team, counted from the matches: points, matches won, and so on."""
 
     def __init__(self, teams: Sequence[str], matches: Iterable[Counted]) -> None:
         self.seed = {team: place for place, team in enumerate(teams)}

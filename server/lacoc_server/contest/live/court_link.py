@@ -239,20 +239,14 @@ class CourtLink:
 
     @property
     def sheet(self) -> Sheet | None:
-        """The court's newest sheet.
-
-        None while the court is away, or a newer sheet is still to come.
-        """
+        """The court's newest sheet; None while the court is away, or a newer one is to come."""
         if self.health is None or not self.is_there or self.health.sheet != self._sheet.hash:
             return None
         return self._sheet.value
 
     @property
     def call(self) -> str | None:
-        """Id of the call whose match the court has; "": the court has no match.
-
-        None: not known now.
-        """
+        """Id of the call whose match the court has; "": it has no match; None: not known now."""
         sheet = self.sheet
         return None if sheet is None else sheet.call
 

@@ -84,7 +84,7 @@ class Teller:
     def tell(
         self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, SeenCourt], now_ms: int
     ) -> None:
-        """Estimate where the teams are, and send it to courts that have an older state.
+        """Find out where each team plays or waits, and send this to the courts that need it.
 
         Args:
             contest: the contest.

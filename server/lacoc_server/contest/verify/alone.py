@@ -156,9 +156,7 @@ def _recorded(record: Record, seat: int) -> BotFactory:
 
 
 def _first_difference(record: Record, players: Sequence[Player]) -> int | None:
-    """Return the first beat at which recorded inputs differ from those of `simulate`.
-
-    None: none does.
+    """Return the first beat whose inputs differ from those of `simulate`; None: all are equal.
 
     Raises:
         UserError: if a bot breaks.

@@ -50,10 +50,7 @@ class Format(Protocol):
         """
 
     def rounds(self, stage: Stage) -> int:
-        """Return how many rounds are drawn one by one at most.
-
-        0: the first draw fixes all rounds.
-        """
+        """Return the largest number of rounds that are drawn one by one; 0: none is."""
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]

@@ -166,7 +166,7 @@ def _news(contest: Contest) -> dict[str, Phrase]:
 def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Whereabouts:
     """Say where a team with a called game plays.
 
-    Until the court has the game, the team still waits.
+    While the court does not have the game yet, say that the team waits for it.
     """
     view, match = _match(contest, call.pairing)
     opponent = call.teams[call.teams[0] == team]
@@ -277,10 +277,7 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
 
 
 def _why_gone(contest: Contest, team: str) -> Phrase | None:
-    """Say why a team left the contest, by the newest decision about it.
-
-    None: there is no such decision.
-    """
+    """Say why a team left the contest, by the newest decision about it; None: no decision says."""
     for fact in reversed(contest.decisions):
         match fact:
             case Substituted(team=name) if name == team:
