@@ -1,1 +1,1 @@
-"""What an organiser does with a contest: the same acts for commands and for the office."""
+"""What an organiser can do with a contest. Commands and the office use the same functions."""

@@ -1,4 +1,4 @@
-"""The certificate of a contest's pages and courts: made in a hall without a domain, and checked."""
+"""Make and check the TLS certificate of a contest's pages and courts, also without a domain."""
 
 import ipaddress
 import json
@@ -36,21 +36,21 @@ _TABLE = "[contest]"
 _ALWAYS = ("localhost", "127.0.0.1", "::1")
 _NAME = "LACOC contest"
 _LIFE = timedelta(days=397)
-"""Validity of a certificate: a season and some weeks."""
+"""How long a certificate is valid: a season and some weeks."""
 _AUTHORITY_LIFE = timedelta(days=3650)
 _CLOCKS_DIFFER = timedelta(days=1)
 _SOON = timedelta(days=14)
 
 
 def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]:
-    """Make a certificate, and name its files in the contest file; later runs renew it.
+    """Make a TLS certificate, and write the paths of its files into the contest file.
 
-    The first run makes the private authority that issues it. The certificate keeps the names of the
-    one before.
+    The first run also makes the private authority that issues the certificate. A later run makes a
+    new certificate, which keeps all names of the previous one.
 
     Args:
         file: the contest file.
-        hosts: names and IP addresses, besides those that are known.
+        hosts: names and IP addresses to add to those of the contest file and of this machine.
 
     Returns:
         All names and IP addresses in the certificate, and its last day.
@@ -96,7 +96,7 @@ def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]
 
 
 def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
-    """Return the contest file's bytes with entries for the certificate, and the contest in them."""
+    """Return the contest file's bytes with the certificate's entries, and the contest in them."""
     try:
         data = file.read_bytes()
         table = read_toml(data).get("contest", {})
@@ -124,7 +124,7 @@ def _insert_entries(data: bytes, file: Path, *, must_have_table: bool) -> bytes:
 
 
 def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, ec.EllipticCurvePrivateKey]:
-    """Load the authority of the contests in a folder; make one if there is none.
+    """Load the certificate authority of a folder; if the folder has none, make one.
 
     Raises:
         UserError: if the authority that is there can't issue certificates.
@@ -211,11 +211,12 @@ def _write(path: Path, data: bytes) -> None:
 def doubts(
     public: PublicAddress, entries_close: datetime | None, now: datetime
 ) -> Iterator[Phrase]:
-    """Yield what is doubtful about a certificate: it ends soon, or is of another name.
+    """Yield warnings about a certificate: it ends soon, or it is for other host names.
 
     Args:
         public: how others reach the pages; it has a certificate.
-        entries_close: when entries close, if the contest file says so: the contest is later.
+        entries_close: when entries close, if the contest file says so. The contest is later, so the
+            certificate must outlast this time.
         now: time with a time zone.
 
     Raises:
@@ -252,6 +253,6 @@ def _names(certificate: x509.Certificate) -> list[str]:
 
 
 def _is_of(name: str, host: str) -> bool:
-    """Return whether a name of a certificate is a host, or "*." before its domain."""
+    """Return whether a certificate's name fits a host: the same, or "*." before its domain."""
     name = name.lower()
     return name == host or (name.startswith("*.") and name[2:] == host.partition(".")[2])

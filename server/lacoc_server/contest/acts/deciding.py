@@ -1,4 +1,4 @@
-"""Decisions about a match: the fact of each one, and what it would change."""
+"""Decisions about a match: make the fact of a decision, and say what it would change."""
 
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence
@@ -43,11 +43,11 @@ class WantedDecision(NamedTuple):
     kind: Kind
     pairing: str
     game: int
-    """Number of the game; not for "void" and "no-show"."""
+    """Number of the game in its match; the kinds "void" and "no-show" do not use it."""
     team: str
-    """The team that did not come; for "no-show"."""
+    """The team that did not come; only the kind "no-show" uses it."""
     scores: tuple[int, int] | None
-    """Points of the left and of the right seat; for "result"."""
+    """Points of the left and of the right seat; only the kind "result" uses them."""
     reason: str
 
 
@@ -84,7 +84,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
 
 def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say how matches stand then, and of which stages the matches are gone."""
+    """Say how changed matches would stand, and how many matches of a stage would disappear."""
     gone: Counter[str] = Counter()
     for before, match in found.matches:
         if match is not None:
@@ -105,7 +105,7 @@ def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
 
 
 def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[Phrase]:
-    """Say which games courts give back: those that are not needed then, and have not ended."""
+    """Say which games, not needed any more and not ended, would be taken back from courts."""
     stay = {call.id for call in needed(then)}
     for call in was.running:
         if call.id not in stay and call.pairing not in ended:
@@ -114,7 +114,10 @@ def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[P
 
 
 def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
-    """Say which ranks change, and which stages keep their teams all the same."""
+    """Say which ranks would change.
+
+    Name the stages that follow and are drawn already: they keep their teams.
+    """
     for stage, team, old, now in found.ranks:
         name = title(then, stage)
         if then.stage(stage).over:
@@ -128,7 +131,7 @@ def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
 
 
 def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say which stages end with a decision, and what is drawn then, or waits for the organiser."""
+    """Say which stages would end, and which draw would follow or would wait for the organiser."""
     ended = {view.name for view in was.stages if view.over}
     for view in then.stages:
         if view.over and view.name not in ended:
@@ -152,7 +155,7 @@ def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
 
 
 def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
-    """Say which teams of the next draw have another seed than by rank, and why."""
+    """Say for each team of the next draw whose seed is not its rank why the seed differs."""
     plan = contest.planned[0]
     how = FORMATS[plan.format]
     for team, why in moved_apart(contest, plan, how, draw.entries).items():
@@ -160,9 +163,9 @@ def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
 
 
 def _meaning(was: Contest, then: Contest, result: Played | Replaced) -> Iterator[Phrase]:
-    """Say what a result means: how its match stands then, and what both teams play next.
+    """Say what a result would mean: how its match would stand, and what both teams would play next.
 
-    Nothing is said of a result that counts already.
+    If the result counts already, nothing is said.
     """
     if _counts(was, result):
         return
@@ -196,7 +199,7 @@ def _meaning(was: Contest, then: Contest, result: Played | Replaced) -> Iterator
 
 
 def _counts(contest: Contest, result: Played | Replaced) -> bool:
-    """Return whether a game counts with a result already."""
+    """Return whether this result of a game counts already."""
     return any(
         (game.number, game.teams, game.scores, game.outcome)
         == (result.game, result.teams, result.scores, result.outcome)
@@ -211,7 +214,7 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
     """Return the fact of a decision.
 
     Raises:
-        UserError: if there is no such match, game or team, or something is missing.
+        UserError: if there is no such match, game or team, or the reason or the points are missing.
     """
     if not wanted.reason.strip():
         raise UserError(say("decide.needs-reason"))
@@ -242,7 +245,7 @@ def match_of(contest: Contest, pairing: str) -> ContestMatch:
     """Return the match of a pairing.
 
     Raises:
-        UserError: if there is none.
+        UserError: if the contest has no match of this pairing.
     """
     matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
     if pairing not in matches:
@@ -252,7 +255,7 @@ def match_of(contest: Contest, pairing: str) -> ContestMatch:
 
 
 def _seats(match: ContestMatch, game: int) -> tuple[str, str]:
-    """Return who sat left and right in a game, or will sit there."""
+    """Return the teams of a game: who sat left and right, or will sit so in the next game."""
     played = {one.number: one.teams for one in match.games}
     if game in played:
         return played[game]

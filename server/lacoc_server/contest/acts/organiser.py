@@ -1,4 +1,4 @@
-"""What an organiser does with a contest: enter teams, take them out, let their games be played."""
+"""What an organiser does with a contest: enter teams, take them out, draw, play it offline."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -49,15 +49,15 @@ def enter(
     club: str = "",
     by: str = "",
 ) -> Phrase:
-    """Enter a team, or change its files; return what was done.
+    """Enter a team, or change the files of a team that is in; say what was done.
 
     Args:
         file: the contest file.
         team: name of the team.
         folder: folder with its files; None: the contest's robot and gait.
         bot: the bot that plays for it; "": people play.
-        reason: why it enters, or its files change, after entries were closed.
-        found: called with the files that were found, before they are weighed in.
+        reason: why the team enters, or its files change; needed once entries are closed.
+        found: called with the team's files before they are weighed in.
         club: its school or club; "": none.
         by: who of the staff decides; "": the organiser.
 
@@ -75,10 +75,11 @@ def enter(
 
 
 def team_name(text: str) -> str:
-    """Return a team's name as it is kept.
+    """Return a team's name in the form in which the contest keeps it.
 
     Raises:
-        UserError: if nothing of it can be seen, it is too long, or has signs that can't be printed.
+        UserError: if the name has no visible character, is too long, or has characters that can't
+            be printed.
     """
     team = read_name(text, TEAM_NAME_MAX)
     if team is None:
@@ -94,14 +95,16 @@ def enter_weighed(
     reason: str,
     club: str = "",
 ) -> Phrase:
-    """Enter a team with an entry that was weighed in, or change its files; return what was done.
+    """Enter a team with a weighed entry, or change the files of a team that is in.
+
+    Say what was done.
 
     Args:
         where: the contest.
         store: its facts.
         team: name of the team, from `team_name`.
         entry: its files and its bot.
-        reason: why it enters, or its files change, after entries were closed.
+        reason: why the team enters, or its files change; needed once entries are closed.
         club: its school or club; "": none.
 
     Raises:
@@ -145,7 +148,7 @@ def enter_weighed(
 
 
 def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str = "") -> Phrase:
-    """Take a team out of a contest; return what was done.
+    """Take a team out of a contest; say what was done.
 
     Args:
         file: the contest file.
@@ -165,7 +168,7 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str 
 
 
 def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
-    """Return the facts with which a team leaves; none if it has left already.
+    """Return the facts that take a team out; no fact if it has left already.
 
     A team that has withdrawn can still be disqualified.
 
@@ -183,7 +186,7 @@ def drawing(contest: Contest) -> Drawn:
     """Return the draw that waits for the organiser.
 
     Raises:
-        UserError: if none does.
+        UserError: if no draw waits for the organiser.
     """
     draw = waits_for_organiser(contest, FORMATS)
     if draw is None:
@@ -192,16 +195,16 @@ def drawing(contest: Contest) -> Drawn:
 
 
 def draw(store: FactStore, shown: Drawn) -> Phrase:
-    """Draw the stage that waits for the organiser; return what was done.
+    """Draw the stage that waits for the organiser; say what was done.
 
     Args:
         store: the facts.
-        shown: the draw that the organiser has seen, or these teams in an order by hand; with a lot,
-            the lot makes the order.
+        shown: the draw as the organiser's page showed it, or the same teams in an order made by
+            hand. If a lot decides, it makes the order.
 
     Raises:
-        UserError: if no stage waits, or another draw does, or a reason or the lot is missing: then
-            nothing is drawn.
+        UserError: if no draw waits or a different one does, or if the reason or the lot is missing;
+            nothing is drawn then.
     """
 
     def decision(facts: tuple[AnyFact, ...]) -> list[AnyFact]:
@@ -224,7 +227,7 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
 
 
 def tokens(file: Path, team: str | None) -> dict[str, str]:
-    """Return the tokens of teams by name; those that are missing are made.
+    """Return the tokens of teams, by team; make the tokens that do not exist yet.
 
     Args:
         file: the contest file.
@@ -267,8 +270,8 @@ def play_headless(
         The sheet at the end, and how many games this call played.
 
     Raises:
-        UserError: if the contest runs already, has no stage or too few teams, a game has no time
-            limit, or something goes wrong.
+        UserError: if the contest runs already, has no stage or too few teams, if a game has no time
+            limit, or if a game can't be played or written.
     """
     where = ContestFolder(file)
     with where.alone(), FactStore(where.facts) as store:
@@ -333,9 +336,10 @@ def prepare(
 
 
 def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
-    """Return what is possible in the plans of stages, but hardly meant with the teams that are in.
+    """Return warnings about plans that are legal, but hardly meant for this number of teams.
 
-    In a Swiss stage with more rounds than a team has opponents, teams meet again.
+    Up to now there is one: a Swiss stage with more rounds than a team has opponents, so teams meet
+    again.
     """
     here = sum(not team.gone for team in contest.teams)
     found: list[Phrase] = []
@@ -351,7 +355,7 @@ def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
 
 
 def doubts_of(file: Path) -> list[Phrase]:
-    """Return `doubts` of a contest that has facts."""
+    """Return the warnings of `doubts` for the contest file and the facts beside it."""
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
         return doubts(where, compute(store.facts(), FORMATS))
@@ -369,10 +373,10 @@ def check_teams(where: ContestFolder, contest: Contest) -> None:
 
 
 def close_in_time(where: ContestFolder, store: FactStore) -> None:
-    """Close entries if their time is over.
+    """Close entries if the contest file names a time for it, and that time has passed.
 
     Raises:
-        UserError: if that can't be written.
+        UserError: if the fact can't be written.
     """
     end = where.contest.entries_close
     if end is not None and end.astimezone(UTC) <= datetime.now(UTC):

@@ -1,6 +1,7 @@
-"""Steers the day: moves matches, pauses, shifts, takes back, lets substitutes in; tells all.
+"""Facts with which an organiser steers the day: moves, pauses, shifts, substitutes, announcements.
 
-Each function returns the facts to append, so that it can first be shown what they would change.
+A function here appends nothing. It returns the facts, so the organiser can see first what they
+would change.
 """
 
 from collections.abc import Collection
@@ -39,14 +40,15 @@ def moving(
     before: str = "",
     not_before_ms: int = 0,
 ) -> Moved:
-    """Move a match to another court, before another match, or to a later time.
+    """Return the fact that moves a match to another court or time, or before another match.
 
     Args:
         contest: the contest.
         courts: names of its courts.
         pairing: the match; its teams need not be known yet.
         court: the only court for it; "": any court.
-        before: the match before which it comes; "": the order of the schedule.
+        before: the match directly before which this one is played; "": it keeps its place in the
+            schedule.
         not_before_ms: when it is called at the earliest, in milliseconds since 1970, UTC; 0: at any
             time.
 
@@ -67,17 +69,17 @@ def moving(
 
 
 def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused:
-    """Call no more games.
+    """Return the fact that pauses the contest: no more games are called.
 
     Args:
         contest: the contest.
-        until_ms: when it goes on by itself, in milliseconds since 1970, UTC; 0: when somebody says
-            so.
+        until_ms: when the contest goes on by itself, in milliseconds since 1970, UTC; 0: it goes on
+            only when somebody resumes it.
         reason: why; everybody can read it.
-        now_ms: the time.
+        now_ms: the time now, in milliseconds since 1970, UTC.
 
     Raises:
-        UserError: if it is paused already, or would go on before now.
+        UserError: if the contest is paused already, or `until_ms` is in the past.
     """
     if contest.day.paused and not until_ms:
         raise UserError(say("day.paused-already"))
@@ -87,10 +89,10 @@ def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused
 
 
 def resuming(contest: Contest, now_ms: int) -> Resumed:
-    """Let the contest go on.
+    """Return the fact that ends a pause or a shift's wait.
 
     Raises:
-        UserError: if nothing holds it.
+        UserError: if games are being called: nothing holds them back.
     """
     if not contest.day.is_held(now_ms):
         raise UserError(say("day.not-paused"))
@@ -98,19 +100,20 @@ def resuming(contest: Contest, now_ms: int) -> Resumed:
 
 
 def shifting(by_ms: int, reason: str) -> Shifted:
-    """Make all that is to come later by so much."""
+    """Return the fact that postpones everything still to come by `by_ms`, in milliseconds."""
     return new(Shifted, by_ms=by_ms, reason=reason)
 
 
 def unshifting(contest: Contest, shift: str = "") -> Unshifted:
-    """Take the newest shift back.
+    """Return the fact that takes the newest shift back.
 
     Args:
         contest: the contest.
-        shift: id of its fact, so that whoever asks twice takes one back; "": whichever it is.
+        shift: id of the shift's fact. With it, a request that is sent twice takes only one shift
+            back. "": the newest one, whatever its id.
 
     Raises:
-        UserError: if there is none, or it is another one.
+        UserError: if there is no shift, or `shift` is not the newest one.
     """
     newest = contest.shifted
     if newest is None or shift not in ("", newest.id):
@@ -119,12 +122,12 @@ def unshifting(contest: Contest, shift: str = "") -> Unshifted:
 
 
 def announcing(text: str) -> Announced:
-    """Show a line on all pages; "" takes it away."""
+    """Return the fact that shows a line on all pages; an empty text removes the line."""
     return new(Announced, text=" ".join(text.split()))
 
 
 def substituting(contest: Contest, team: str, substitute: str, reason: str) -> Substituted:
-    """Let a team take the place of another one that has not played.
+    """Return the fact that gives a team's place in stages where it has not played to a substitute.
 
     Raises:
         UserError: if a team is not in the contest, the substitute has a place of its own in each
@@ -144,7 +147,11 @@ def substituting(contest: Contest, team: str, substitute: str, reason: str) -> S
 
 
 def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
-    """Return the teams of each stage that is not over, in which a team has a place and no game."""
+    """Return the stages in which a team could give up its place, each as the tuple of its teams.
+
+    These are the stages that are not over, and in which the team has a place but has played no
+    game.
+    """
     return [
         view.stage.entries
         for view in contest.stages
@@ -155,16 +162,19 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
 
 
 def undrawable(contest: Contest) -> str:
-    """Return the newest stage, if no game of it has a result; "" if its draw stays."""
+    """Return the newest stage if its draw can be taken back: no game of it has a result.
+
+    Else "".
+    """
     newest = contest.stages[-1].name if contest.stages else ""
     return "" if newest in contest.stages_ended_ms else newest
 
 
 def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undrawn]:
-    """Take the draw of a stage back; the stage then waits until the organiser draws it again.
+    """Return the facts that take the draw of a stage back; the organiser must then draw it again.
 
     Returns:
-        Facts: those that take the stage's games from courts, then the one that takes the draw back.
+        First the facts that take the stage's games back from courts, then the fact about the draw.
 
     Raises:
         UserError: if no stage is named, it is not drawn, a game of it has a result, another stage
@@ -188,10 +198,10 @@ def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undr
 
 
 def done(contest: Contest, fact: AnyFact) -> Phrase:
-    """Say what was done with a fact of this module.
+    """Say what a fact made by this module has done.
 
     Args:
-        contest: the contest as it was before.
+        contest: the contest before the fact was appended.
         fact: the fact.
     """
     match fact:
@@ -216,7 +226,7 @@ def done(contest: Contest, fact: AnyFact) -> Phrase:
 
 
 def _moved(contest: Contest, fact: Moved) -> Phrase:
-    """Say which match was moved, with its teams if they are known: rounds have many matches."""
+    """Say which match was moved. Name its teams if they are known, as a round has many matches."""
     coming = {one.pairing.id: one for one in foreseen(contest, FORMATS)}
     one = coming.get(fact.pairing)
     what = one.fixture if one is not None else named(contest, fact.pairing)

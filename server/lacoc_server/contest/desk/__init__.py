@@ -1,6 +1,6 @@
 """The desk of an office: it answers what an organiser and teams ask from pages.
 
-`desk` answers a request; `admission` checks its secret. `entering` does what a team asks, and
-`organising` what the organiser asks. `deciding` makes decisions about matches. `overview` is what
-the organiser's page shows. `service` connects the desk to the network.
+`desk` answers a request; `admission` checks its secret. `entering` serves requests of teams,
+`organising` those of the organiser, and `refereeing` those of referees. `overview` makes the view
+of the organiser's page. `service` connects the desk to the network.
 """

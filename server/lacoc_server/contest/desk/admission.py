@@ -1,4 +1,4 @@
-"""Who is at the desk: the organiser, a team, or somebody with the event code; pure."""
+"""Checks who sends a request: the organiser, staff, a team, a referee or an applicant; pure."""
 
 import hashlib
 import hmac
@@ -10,12 +10,12 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import Phrase, say
 
 _GUESSES_HZ, _GUESSES_BURST = 20.0, 200
-"""Wrong secrets in a second, and at once, that are answered with what is wrong. For more than that
-the answer is `Slower`. There are 32 to the power of 6 event codes."""
+"""How many wrong secrets a second, and how many at once, are answered with the reason. Beyond that
+the answer is `Slower`, so nobody can guess one of the 32 to the power of 6 event codes."""
 
 
 class Slower(UserError):
-    """Too many wrong secrets were shown. A right one is still let in."""
+    """Too many wrong secrets were shown. A request with a right secret is still answered."""
 
 
 class Admission:
@@ -23,7 +23,7 @@ class Admission:
 
     Args:
         organiser: the organiser's key.
-        staff_of: takes a token; returns the name of who has it among the staff, or None.
+        staff_of: takes a token; returns the name of the member of staff who has it, or None.
         code: returns the event code.
         team_of: takes a token; returns the team that has it, or None.
     """
@@ -44,7 +44,7 @@ class Admission:
         """Number of wrong secrets."""
 
     def organiser(self, secret: str, now_s: float) -> str:
-        """Let the organiser in, or one of the staff; return the name; "": the organiser.
+        """Check the secret of the organiser or of staff; return the staff's name, or "".
 
         Raises:
             UserError: if this is neither the organiser's key nor a token of the staff.
@@ -56,7 +56,7 @@ class Admission:
         raise self._wrong(say("desk.not-organiser"), now_s)
 
     def applicant(self, secret: str, now_s: float) -> None:
-        """Let somebody in who has the event code.
+        """Check that somebody who applies has the event code.
 
         Raises:
             UserError: if this is not the event code.
@@ -65,7 +65,7 @@ class Admission:
             raise self._wrong(say("desk.wrong-code"), now_s)
 
     def team(self, secret: str, now_s: float) -> str:
-        """Let a team in; return its name.
+        """Check the secret of a team; return the team's name.
 
         Raises:
             UserError: if no team has this token.
@@ -76,15 +76,15 @@ class Admission:
         return found
 
     def referee(self, secret: str, token: str | None, now_s: float) -> None:
-        """Let the referee of a court in.
+        """Check that a secret is the token of a court's referee.
 
         Args:
-            secret: what was shown.
+            secret: the secret in the request.
             token: the token of the court's referee; None: there is no such court.
             now_s: monotonic time [s].
 
         Raises:
-            UserError: if this is not the token.
+            UserError: if the secret is not this token, or there is no such court.
         """
         if not _same(secret, token or "") or not token:
             raise self._wrong(say("refused.no-referee-token"), now_s)
@@ -97,7 +97,7 @@ class Admission:
 
 
 def _same(shown: str, wanted: str) -> bool:
-    """Compare two secrets; the time that this takes tells nothing of the wanted one."""
+    """Return whether two secrets are equal, in a time that reveals nothing about the right one."""
     digests = (
         hashlib.blake2b(one.encode("utf-8", "surrogatepass")).digest() for one in (shown, wanted)
     )

@@ -1,4 +1,4 @@
-"""What the desk works on: the facts of a contest, the applications, and the teams' tokens."""
+"""The data that the desk works on: a contest's facts, its applications, and the teams' tokens."""
 
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.contacts import Contacts
@@ -14,11 +14,11 @@ from lacoc_shared.messages.desk import EventInfo
 from lacoc_shared.mistakes import Mistake
 
 _REFUSED_KEPT = 50
-"""Most teams whose mistakes are kept for the organiser."""
+"""For how many teams the mistakes in refused files are kept at most, for the organiser to read."""
 
 
 class Book:
-    """A contest as the desk knows it; one thread at a time uses it.
+    """The data of a contest that the desk reads and changes; only one thread may use it at a time.
 
     Args:
         where: the contest.
@@ -46,7 +46,7 @@ class Book:
 
     @property
     def facts(self) -> tuple[AnyFact, ...]:
-        """All facts, also those that other programs have appended.
+        """All facts of the contest, also those that other programs have appended.
 
         Raises:
             UserError: if they can't be read.
@@ -68,7 +68,7 @@ class Book:
 
     @property
     def event(self) -> EventInfo:
-        """The contest's name, whether entries are open, and when they close; no secret."""
+        """Public data of the contest, such as its name, and whether entries are open."""
         plan = self.where.contest
         return EventInfo(
             name=plan.name,
@@ -79,16 +79,16 @@ class Book:
         )
 
     def team(self, name: str) -> Team | None:
-        """Return a team of the contest; None: it has not entered."""
+        """Return a team of the contest; None: no team of this name has entered."""
         return next((team for team in self.contest.teams if team.name == name), None)
 
     def is_taken(self, name: str) -> bool:
-        """Return whether a team that is in or waits has this name, or one that looks like it."""
+        """Return whether a team, entered or waiting, has this name or one that looks like it."""
         names = (*(team.name for team in self.contest.teams), *self.applications.waiting)
         return any(look_alike(name, other) for other in names)
 
     def note_refused(self, team: str, mistakes: tuple[Mistake, ...]) -> None:
-        """Note what is wrong with the files that a team handed in last; () if nothing is."""
+        """Keep the mistakes in a team's newest files; an empty tuple removes those kept before."""
         self.refused.pop(team, None)
         if mistakes:
             self.refused[team] = mistakes

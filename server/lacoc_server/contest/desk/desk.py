@@ -53,7 +53,7 @@ from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import say
 
 _WEIGHED_AT_ONCE = 2
-"""Most weigh-ins at a time; others wait for them."""
+"""How many entries are weighed in at the same time at most; further ones wait."""
 _requests: msgspec.msgpack.Decoder[AnyRequest] = msgspec.msgpack.Decoder(AnyRequest)
 
 
@@ -166,7 +166,7 @@ class Desk:
                 return organising.tokens(book, by)
 
     def _publish(self) -> Said:
-        """Publish the contest; copying the records takes a while, and others are served meanwhile.
+        """Write the contest to its published folder. Other requests are answered meanwhile.
 
         Raises:
             UserError: if a record or an entry is missing, or something can't be written.
@@ -187,7 +187,10 @@ class Desk:
             return entering.apply(self._book, team, entry, contact)
 
     def _weighed(self, team: str, files: TeamFiles) -> ContestEntry:
-        """Weigh in files; note for the organiser what is wrong with them."""
+        """Weigh in a team's files; return the entry.
+
+        Note any mistakes in the files for the organiser.
+        """
         contest = self._book.where.contest
         try:
             with self._scales:  # reading a workbook takes a while, too
@@ -206,7 +209,7 @@ def read(payload: bytes) -> AnyRequest:
     """Decode a request.
 
     Raises:
-        UserError: if it is none, or too long.
+        UserError: if the bytes are no request, or are too long.
     """
     try:
         if len(payload) > DESK_MAX_BYTES:

@@ -1,4 +1,4 @@
-"""What a team asks the desk: to take part, to use other files, how its entry stands."""
+"""Requests of a team: apply to take part, hand in other files, read how its entry stands."""
 
 from dataclasses import replace
 from typing import Literal
@@ -16,7 +16,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 APPLICATIONS_MOST = 300
-"""Most teams that wait for the organiser."""
+"""How many teams can wait for the organiser's approval at most."""
 
 
 def handed_in(files: TeamFiles, robot: str) -> HandedIn:
@@ -27,8 +27,8 @@ def handed_in(files: TeamFiles, robot: str) -> HandedIn:
         robot: the contest's robot, for a team that brings none.
 
     Raises:
-        UserError: if there is no gait file, the picture is none, or the contest's robot can't be
-            read.
+        UserError: if there is no gait file, the picture can't be read as one, or the contest's
+            robot can't be read.
     """
     if files.postures is None and files.locomotion is None:
         raise UserError(say("desk.no-files"))
@@ -38,9 +38,10 @@ def handed_in(files: TeamFiles, robot: str) -> HandedIn:
 
 
 def newcomer(book: Book, text: str) -> str:
-    """Check whether a team can apply; return its name as it is kept.
+    """Check whether a new team can apply.
 
-    Once entries are closed, the organiser needs a reason to let it in.
+    Return its name in the form in which the contest keeps it. A team can apply after entries are
+    closed, too; then the organiser must give a reason to let it in.
 
     Raises:
         UserError: if the contest is over, the name is wrong or taken, or too many teams wait.
@@ -57,10 +58,10 @@ def newcomer(book: Book, text: str) -> str:
 
 
 def apply(book: Book, team: str, entry: ContestEntry, contact: Contact) -> OwnEntry:
-    """Let a weighed entry of a new team wait for the organiser.
+    """Store the weighed entry of a new team, which then waits for the organiser's approval.
 
     Raises:
-        UserError: as `newcomer`, or if it can't be written.
+        UserError: as `newcomer`, or if the entry can't be written.
     """
     team = newcomer(book, team)  # somebody else may have taken the name while this was weighed
     book.contacts.put(team, contact)
@@ -69,11 +70,11 @@ def apply(book: Book, team: str, entry: ContestEntry, contact: Contact) -> OwnEn
 
 
 def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
-    """Take new files of a team; they have been weighed in.
+    """Replace the files of a team by new ones that were weighed in.
 
     While entries are open, a team that is in uses its new files at once. When entries are closed,
-    or if the team itself still waits, its files wait for the organiser. Without a new picture it
-    keeps the one that it has.
+    or if the team itself still waits, its files wait for the organiser. A team that sends no new
+    picture keeps its old one.
 
     Raises:
         UserError: if the team has left the contest, or the files can't be written.
@@ -109,7 +110,7 @@ def picture(book: Book, team: str) -> bytes | None:
 
 
 def own(book: Book, team: str) -> OwnEntry:
-    """Say how a team's own entry stands.
+    """Return how a team's own entry stands, for the team's page.
 
     Raises:
         UserError: if the facts can't be read, or a new token can't be written.

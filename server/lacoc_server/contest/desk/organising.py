@@ -1,4 +1,4 @@
-"""What the organiser and the staff ask the desk; `acts` does it."""
+"""Requests of the organiser and the staff, which the desk hands on to `acts`."""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -32,7 +32,7 @@ from lacoc_shared.words import Phrase, render, say
 
 
 def approve(book: Book, asked: Approve) -> Said:
-    """Let teams take part, come back while entries are open, or use their late files.
+    """Approve teams: let new ones in, former ones come back, and others use their late files.
 
     Raises:
         UserError: if a team has neither applied nor been here before, if it can't come back, or if
@@ -55,7 +55,7 @@ def approve(book: Book, asked: Approve) -> Said:
 
 
 def decline(book: Book, teams: Sequence[str]) -> Said:
-    """Turn applications down, and forget that files were refused.
+    """Turn down what teams have handed in, and forget the mistakes in files that were refused.
 
     A team that is already in the contest keeps its token; any other team loses it.
 
@@ -76,7 +76,7 @@ def decline(book: Book, teams: Sequence[str]) -> Said:
 
 
 def new_code(book: Book) -> Said:
-    """Make another event code; teams that have applied keep their links.
+    """Replace the event code by a new one; the links of teams that have applied stay valid.
 
     Raises:
         UserError: if it can't be written.
@@ -86,7 +86,7 @@ def new_code(book: Book) -> Said:
 
 
 def close(book: Book) -> Said:
-    """Close entries, so that the office draws.
+    """Close entries; the office can then draw the first stage.
 
     Raises:
         UserError: if there are fewer than two teams, or entries are closed already.
@@ -121,7 +121,7 @@ def take_out(book: Book, asked: TakeOut) -> Effect:
 
 
 def remove_picture(book: Book, team: str) -> Said:
-    """Take the picture of a team away, from files that wait and from those it plays with.
+    """Remove a team's picture from its files that wait, and from those with which it plays.
 
     Raises:
         UserError: if the files can't be read or written.
@@ -141,7 +141,7 @@ def rule(book: Book, asked: Rule) -> Effect:
     """Decide about a match, or say what that would change.
 
     Raises:
-        UserError: if there is no such match, game or team, or something is missing.
+        UserError: if there is no such match, game or team, or the reason or the points are missing.
     """
     wanted = deciding.WantedDecision(
         asked.kind, asked.pairing, asked.game, asked.team, asked.scores, asked.reason
@@ -159,7 +159,10 @@ def undraw(book: Book, asked: Undraw) -> Effect:
 
 
 def substitute(book: Book, asked: Substitute) -> Effect:
-    """Let a substitute in, or say what that would change; errors as `substituting`."""
+    """Give a team's place to a substitute, or say what that would change.
+
+    The errors are those of `steering.substituting`.
+    """
     teams, reason = (asked.team, asked.substitute), asked.reason
     return _decided(
         book, lambda contest: [steering.substituting(contest, *teams, reason)], asked.really
@@ -171,7 +174,11 @@ def steer(
     asked: Move | PauseContest | ResumeContest | Shift | Unshift | Announce,
     now_ms: int,
 ) -> Said:
-    """Move a match, pause, go on, shift or unshift, tell all; errors as in `acts.steering`."""
+    """Steer the day, as in `acts.steering`, with the same errors; say what was done.
+
+    A request moves a match, pauses or resumes the contest, makes or undoes a shift, or shows a line
+    to all.
+    """
 
     def act(contest: Contest) -> AnyFact:
         match asked:
@@ -196,11 +203,11 @@ def steer(
 
 
 def staff(book: Book, asked: Staff) -> Said:
-    """Give somebody a link with a name, or take it away.
+    """Add a member of staff, who gets a link of their own, or remove one.
 
     Raises:
-        UserError: if nothing of the name can be seen, it is too long, or the file of secrets can't
-            be written.
+        UserError: if the name has no visible character or is too long, or if the file of secrets
+            can't be written.
     """
     name = organiser.team_name(asked.name)
     if asked.remove:
@@ -211,7 +218,7 @@ def staff(book: Book, asked: Staff) -> Said:
 
 
 def tokens(book: Book, by: str) -> TokenList:
-    """Return the tokens of all teams of people that are in or wait, of referees and open seats.
+    """Return the tokens of referees, open seats, and teams without a bot that have entered or wait.
 
     Args:
         book: the contest.
@@ -238,12 +245,12 @@ def tokens(book: Book, by: str) -> TokenList:
 
 
 def _decided(book: Book, act: Callable[[Contest], Iterable[AnyFact]], really: bool) -> Effect:
-    """Say what an act would change; append its facts if `really`.
+    """Say what an act of the organiser would change; append its facts if `really`.
 
     Args:
         book: the contest.
-        act: returns the facts for the contest as it is when they are appended.
-        really: whether they are appended.
+        act: takes the contest as it is now, and returns the facts to append.
+        really: True: append the facts. False: only say what they would change.
     """
     lines = deciding.effect(book.facts, act(book.contest))
     if really:

@@ -77,7 +77,10 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
 
 
 def _shift(contest: Contest, now_ms: int) -> ShiftState | None:
-    """Return the newest shift, while games wait for its end or for a time that it made later."""
+    """Return the newest shift, as long as games still wait because of it; else None.
+
+    They wait for the end of the shift itself, or for a time of a moved match.
+    """
     shift = contest.shifted
     if shift is None:
         return None
@@ -113,7 +116,7 @@ def _to_draw(contest: Contest) -> ToDraw | None:
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
-    """Yield the teams with what they told; those that wait or were refused come first."""
+    """Yield the rows of all teams; those whose files were refused, or wait, come first."""
     contest = book.contest
     played = [view.stage.entries for view in contest.stages if not view.over]
     for row in _rows(book):
@@ -170,7 +173,7 @@ def _state(team: Team) -> Literal["in", "withdrawn", "disqualified"]:
 
 
 def slots(contest: Contest, known: OfficeKnowledge) -> Iterator[Slot]:
-    """Yield the matches that are at a court, then all that are to come."""
+    """Yield the games that are at a court now, then all matches that are still to come."""
     places = {match.pairing.id: (view, match) for view in contest.stages for match in view.matches}
     moves = {move.pairing: move for move in contest.moves}
     for call in contest.running:

@@ -1,4 +1,4 @@
-"""What the referee of a court asks the desk: what comes next, and what a result would change."""
+"""Requests of a court's referee: what comes next there, and what a result would change."""
 
 from lacoc_server.contest.acts import deciding
 from lacoc_server.contest.desk import overview
@@ -12,12 +12,12 @@ _COMING_MOST = 4
 
 
 def plan(book: Book, known: OfficeKnowledge, asked: CourtDay) -> CourtPlan:
-    """Return what comes next at a court, and what a result of its game would change.
+    """Return the next matches at a court, and what a result of the court's game would change.
 
     Args:
         book: the contest.
         known: what the office knows besides the facts.
-        asked: the court, and perhaps a result.
+        asked: the court, and the points of a possible result or None.
 
     Raises:
         UserError: if the facts can't be read.

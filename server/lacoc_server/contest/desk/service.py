@@ -1,4 +1,4 @@
-"""Connects a desk to the network: others send requests, and threads answer them."""
+"""Connects a desk to the network: requests arrive over Zenoh, and threads answer them."""
 
 import threading
 from collections.abc import Callable
@@ -16,10 +16,11 @@ from lacoc_shared.words import say
 
 _THREADS = 4
 _MOST_AT_ONCE = 64
-"""Most requests at a time, with those that are being answered; more are refused, and may be sent
+"""How many requests can wait or be under way at most. Further ones are refused, and may be sent
 again."""
 HERE = "tcp/127.0.0.1:0"
-"""The gateway runs on the machine of the office; no other machine reaches its desk directly."""
+"""Where the desk listens: only on this machine, at a free port, because the gateway runs here
+too."""
 
 
 class DeskService:
@@ -52,7 +53,7 @@ class DeskService:
         self._threads.shutdown(wait=True, cancel_futures=True)
 
     def _arrived(self, request: Request) -> None:
-        """Give a request to a thread; Zenoh's thread runs this."""
+        """Hand a request to a thread that answers it; this is called in Zenoh's thread."""
         if not self._room.acquire(blocking=False):
             request.refuse(encode(Refusal(say("desk.busy"), again=True)))
             return

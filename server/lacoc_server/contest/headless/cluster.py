@@ -14,19 +14,19 @@ from lacoc_shared.words import Phrase, say
 
 _CONNECT_S = 10
 _RETRIES = 3
-"""How often a game is played again because its worker was lost."""
+"""How often Dask plays a game again after its worker was lost."""
 _LOOK_S = 5.0
 """Time between two looks at the workers [s]."""
 _MISSED_LOOKS = 2
-"""Looks without a worker after which this is told; a worker that starts again needs less time."""
+"""After so many looks in a row without a worker the user is told; a worker that restarts is back
+earlier."""
 
 
 class Cluster:
     """Plays games at the workers of a cluster; used as a context manager.
 
-    A game's record comes back with its result, so the workers need no common disk. What a worker
-    had not delivered when it was lost is played again by another one. While there is no worker,
-    games wait.
+    A game's record comes back with its result, so the workers need no common disk. If a worker is
+    lost during a game, another worker plays the game again. While there is no worker, games wait.
 
     Args:
         address: address of the cluster's scheduler, such as tcp://192.168.1.20:8786.
@@ -53,7 +53,10 @@ class Cluster:
         self._client.close()
 
     def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
-        """Play a game when a worker is free; its result is read with `pool.ended`."""
+        """Queue a game for the next free worker.
+
+        Read its result from the future with `pool.ended`.
+        """
         from distributed import KilledWorker
         from distributed.client import ClosedClientError
 
@@ -83,7 +86,10 @@ class Cluster:
         return ours
 
     def _look(self) -> None:
-        """Tell when workers are gone, and when they are back; end the games of a lost cluster."""
+        """Tell when all workers are gone and when one is back.
+
+        If the cluster is lost, end its games.
+        """
         missed = 0
         while not self._closed.wait(_LOOK_S):
             workers = self._client.scheduler_info(n_workers=0).get("n_workers", 0)
@@ -99,7 +105,7 @@ class Cluster:
                 missed = 0
 
     def _lose(self) -> None:
-        """End all games with an error; Dask leaves them without an end."""
+        """End all games with `EngineLost`; Dask itself would never end them."""
         while self._waiting:
             ours = self._waiting.pop()
             ours.set_exception(EngineLost(say("cluster.lost", address=self._address)))

@@ -1,8 +1,8 @@
 """A contest without a network: bots play all its games as fast as the machine can.
 
-A game is computed once. Its record is named by a hash of all that decides it, so whoever plays
-the contest again finds its games done. If an entry has changed, only games that depend on it are
-played again.
+A game is computed once. Its record is named by a hash of all that decides the game. So if the
+contest is played again, the games whose records are there need not be played. If an entry has
+changed, only games that depend on it are played again.
 """
 
 import hashlib
@@ -35,18 +35,20 @@ from lacoc_shared.record.summary import Summary, summary
 from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
-"""Ticks by which bots start later each time that two teams meet in the same seats."""
+"""Two teams can meet again in the same seats. For each earlier such game, their bots start this
+many ticks later."""
 _MOST_DEATHS = 3
-"""How many times a game is played again at most because its process died."""
+"""How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3
-"""A game in which physics stops counts as a draw without points if it was void so often before."""
+"""If a game was void this many times and physics stops again, it counts as a draw without
+points."""
 
 
 class GameEngine(Protocol):
-    """What plays games: processes of this machine, or of others."""
+    """Plays games: in processes of this machine, or on other machines."""
 
     def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
-        """Play a game when there is room; its result is read with `pool.ended`."""
+        """Queue a game; read its result from the future with `pool.ended`."""
 
 
 class _DueGame(NamedTuple):
@@ -55,7 +57,7 @@ class _DueGame(NamedTuple):
     match: ContestMatch
     job: Job
     steer: str
-    """The bot that steers the teams that have entered none; "": both have entered one."""
+    """The bot that steers teams without a bot of their own; "": both teams have one."""
 
     @property
     def name(self) -> tuple[str, int]:
@@ -77,7 +79,7 @@ def play_contest(
     changed: Callable[[Contest], None],
     tell: Callable[[Phrase], None],
 ) -> int:
-    """Play a contest to its end; whatever is played already is not played again.
+    """Play a contest to its end; games that are played already are not played again.
 
     Args:
         folder: the contest.
@@ -93,8 +95,8 @@ def play_contest(
     Raises:
         EngineLost: if the engine can play no more games; what was played is kept.
         UserError: if something can't be written; what was played is kept. Also if games can't be
-            played, for example because a bot has a mistake or never answers; all other games are
-            played first. It names each bot that failed.
+            played, for example because a bot has a mistake or never answers. Then all other games
+            are played first, and the error names each bot that failed.
     """
     playing: dict[Future[PlayedAlone | Phrase], _DueGame] = {}
     failed: dict[tuple[str, int], tuple[Job, Phrase]] = {}
@@ -166,7 +168,7 @@ def _still_due(
     known: Sequence[Played | Replaced],
     facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
-    """Yield the results in `known` of games that, by the facts, are still to be played.
+    """Yield those results in `known` whose games are still to be played by the newest facts.
 
     Another program may just have appended another result of such a game, a fact after which the
     game is not played, or other files of a team.
@@ -228,8 +230,8 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: ContestMatch) 
 
     If they always started at once, two teams that meet again would repeat their earlier game. The
     number depends on the draw, and on how often this next game was played without a result that
-    counts. It never depends on the order in which other games are played. Contest and facts are
-    those before the game.
+    counts. It never depends on the order in which other games are played. `contest` and `facts`
+    must be as they were before the game.
     """
     before = 0
     for view in contest.stages:
@@ -270,9 +272,10 @@ def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
 
 
 def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
-    """Write the record of a game; it gets its name when it is complete and on the disk.
+    """Write the record of a game under a temporary name.
 
-    A record that another program has written meanwhile stays, because facts may have its hash.
+    Rename it once it is complete and on the disk. A record that another program has written
+    meanwhile stays, because facts may have its hash.
     """
     assert record is not None
     path = packed_path(folder.records, job.match_id)
@@ -293,7 +296,7 @@ def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
 
 
 def _ended(path: Path) -> Summary | None:
-    """Return what the record of a game says; None: there is none with a result."""
+    """Return the summary of a game's record; None: the file is missing, or has no result."""
     found = summary(path)
     return found if found is not None and found.scores else None
 
@@ -301,7 +304,7 @@ def _ended(path: Path) -> Summary | None:
 def _result(
     game: _DueGame, folder: ContestFolder, facts: tuple[AnyFact, ...]
 ) -> Played | Replaced | None:
-    """Return what the record of a game says; None: there is no record of it."""
+    """Return the fact of a game's result, from its record; None: no record has a result."""
     path = packed_path(folder.records, game.job.match_id)
     found = _ended(path)
     if found is None:

@@ -34,7 +34,7 @@ _LOOK_S = 0.5
 
 
 class Job(msgspec.Struct, frozen=True, kw_only=True):
-    """A match to play; a process, also on another machine, can take it."""
+    """A match to play. It can be sent to another process, also on another machine."""
 
     match_id: str
     arena: str
@@ -43,9 +43,9 @@ class Job(msgspec.Struct, frozen=True, kw_only=True):
     late_ticks: int
     limits: dict[str, float] = {}
     folder: str | None = None
-    """Folder of the record; None: there is none."""
+    """Folder into which the record is written; None: no record is kept in a folder."""
     brings_record: bool = False
-    """Whether the record comes back as bytes; it is in no folder then."""
+    """Whether the record comes back as bytes with the result, and is not kept in `folder`."""
 
     @property
     def record(self) -> Path | None:
@@ -63,7 +63,7 @@ class PlayedAlone(NamedTuple):
 
     result: Result
     record: bytes | None
-    """The record, if the job brings it."""
+    """The bytes of the record, if the job has `brings_record`; else None."""
     refused_keys: tuple[int, ...]
     """By seat: how many keys were pressed that the seat's gait does not have."""
 
@@ -74,18 +74,18 @@ def match_id(number: int) -> str:
 
 
 def first_number(record: Path | None) -> int:
-    """Return the number after the highest of a folder's records, so that none is overwritten."""
+    """Return a free number for a new record in a folder: one more than the highest there."""
     known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
     return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 
 
 class EngineLost(UserError):
-    """What plays the games is gone, so no game can be played."""
+    """The processes or machines that play games are gone, so no game can be played."""
 
 
 @contextmanager
 def interrupted_by_signals() -> Iterator[None]:
-    """Let a request to end (SIGTERM) do what Ctrl-C does, so that no half record is left."""
+    """In the block, treat a request to end (SIGTERM) like Ctrl-C: no half record is left."""
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         yield
@@ -121,19 +121,19 @@ class Pool:
         return self._workers.processes
 
     def submit(self, job: Job) -> "Future[PlayedAlone | Phrase]":
-        """Play a match when a process is free; its result is read with `ended`."""
+        """Queue a match for the next free process; read its result from the future with `ended`."""
         future = self._workers.submit(attempt_match, job)
         self._playing[future] = job
         return future
 
 
 def ended(job: Job, future: "Future[PlayedAlone | Phrase]") -> PlayedAlone:
-    """Return the result of a job that is done.
+    """Return the result of a job whose future is done, or raise its error.
 
     Raises:
         EngineLost: if no game can be played any more.
         BotFailed: if a bot failed.
-        UserError: if its files or its record have a mistake, or its process died.
+        UserError: if its files have a mistake, its record can't be written, or its process died.
     """
     try:
         found = future.result()
@@ -195,13 +195,16 @@ def play_all(
 def first_done(
     futures: "set[Future[PlayedAlone | Phrase]]",
 ) -> "tuple[set[Future[PlayedAlone | Phrase]], set[Future[PlayedAlone | Phrase]]]":
-    """Wait at most half a second for matches; return those that are over, and the others."""
+    """Wait at most half a second for matches; return the futures that are done, then the others."""
     # A wait without an end could not be interrupted on Windows.
     return wait(futures, _LOOK_S, FIRST_COMPLETED)
 
 
 def attempt_match(job: Job) -> PlayedAlone | Phrase:
-    """Play a match in a worker process; an error that a user can correct is returned."""
+    """Play a match in a worker process.
+
+    Return the message of a `UserError` instead of raising it.
+    """
     try:
         if not job.brings_record:
             return _play(job)
@@ -251,7 +254,7 @@ def _player(arena: arenas.Arena, seated: Seated, late_ticks: int) -> Player:
 
 
 def setup_of(match_id: str, arena: arenas.Arena, limits: Mapping[str, float]) -> Setup:
-    """Return the setup of a match without a network."""
+    """Return the setup of a match that is played without a network."""
     return Setup(
         match_id=match_id,
         court=COURT,
@@ -263,7 +266,7 @@ def setup_of(match_id: str, arena: arenas.Arena, limits: Mapping[str, float]) ->
 
 
 def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
-    """Find the bot of a player; a program that it brings is run.
+    """Find the bot of a player: an installed one, or the team's own program, which is loaded here.
 
     Raises:
         UserError: if there is no such bot, or its program has a mistake.
@@ -274,12 +277,12 @@ def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
 
 
 def _name(seated: Seated) -> str:
-    """Return what messages call a bot: its file as it was entered, or its name."""
+    """Return a bot's name for messages: its file as the team entered it, or its own name."""
     return seated.bot if seated.program is None else f"{seated.bot}.py"
 
 
 def play_alone(job: Job) -> PlayedAlone:
-    """Play a match in this process; errors are as of `ended`."""
+    """Play a match in this process; the errors are those of `ended`."""
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
     with screen.progress() as progress:
         task = progress.add_task(" : ".join(job.teams), total=round(duration_s))

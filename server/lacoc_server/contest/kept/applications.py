@@ -18,7 +18,7 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C434150, 1
-"""Numbers in the file's header: "LCAP" in ASCII, and the version of `_TABLES`."""
+"""Numbers in the database's header: "LCAP" in ASCII, and the version of `_TABLES`."""
 _TABLES = (
     "CREATE TABLE applications (team TEXT PRIMARY KEY, at_ms INTEGER NOT NULL, entry BLOB NOT NULL)"
     " WITHOUT ROWID",
@@ -30,7 +30,7 @@ class Application(NamedTuple):
 
     team: str
     at_ms: int
-    """When they were handed in, in milliseconds since 1970, UTC."""
+    """When the files were handed in, in milliseconds since 1970, UTC."""
     entry: ContestEntry
 
 
@@ -60,12 +60,12 @@ class Applications:
 
     @property
     def waiting(self) -> dict[str, Application]:
-        """The applications by team, the oldest first."""
+        """The newest application of each team, by team, the oldest first."""
         return dict(sorted(self._known.items(), key=lambda one: one[1].at_ms))
 
     @property
     def teams(self) -> tuple[str, ...]:
-        """The names of the teams that wait; any thread may ask."""
+        """The names of the teams whose applications wait; any thread may ask."""
         return tuple(self._known)
 
     def put(self, team: str, entry: ContestEntry, at_ms: int | None = None) -> None:
@@ -85,7 +85,7 @@ class Applications:
         self._known[team] = Application(team, at_ms, entry)
 
     def drop(self, *teams: str) -> None:
-        """Forget the files of teams; nothing happens to a team whose files do not wait.
+        """Remove the applications of teams; a team that has none is passed over.
 
         Raises:
             UserError: if the database can't be written.

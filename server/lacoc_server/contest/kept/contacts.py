@@ -1,4 +1,7 @@
-"""How to reach the teams, and where they come from; only the organiser reads it."""
+"""The contacts and clubs of the teams, as each told when it applied.
+
+Only the organiser reads them.
+"""
 
 from pathlib import Path
 
@@ -10,10 +13,10 @@ from lacoc_shared.words import say
 
 
 class Contact(msgspec.Struct, frozen=True, omit_defaults=True):
-    """What a team told of itself when it applied."""
+    """How to reach a team, and its club, as the team told when it applied."""
 
     reach: str = ""
-    """An address or a number, as the team wrote it."""
+    """An e-mail address or a telephone number, as the team wrote it."""
     club: str = ""
     """Its school or club."""
 
@@ -39,14 +42,14 @@ class Contacts:
             raise UserError(say("command.cannot-read", path=str(path), why=str(error))) from None
 
     def of(self, team: str) -> Contact:
-        """Return what a team told; nothing if it told nothing."""
+        """Return the contact of a team; an empty one if the team told nothing."""
         return self._known.get(team, Contact())
 
     def put(self, team: str, contact: Contact) -> None:
-        """Keep what a team told; nothing is kept of a team that told nothing.
+        """Keep the newest contact of a team; an empty one only removes the contact before.
 
         Raises:
-            UserError: if it can't be written.
+            UserError: if the file can't be written.
         """
         known = {name: one for name, one in self._known.items() if name != team}
         if contact != Contact():

@@ -16,18 +16,18 @@ from lacoc_shared.words import say
 
 
 class Taken(Enum):
-    """What came of an answer to a question for more of a record."""
+    """The result of a question to another machine for more of a record."""
 
     MORE = "more"
     """The copy has grown."""
     NOTHING = "nothing"
-    """There is nothing new, as far as the other machine knows."""
+    """The answer does not continue the copy: the other machine has no more at present."""
     WHOLE = "whole"
     """The whole packed record is here."""
 
 
 def have(folder: Path, match_id: str) -> dict[str, int]:
-    """Return how many bytes of each file of a match's record are here, by the file's name.
+    """Return the files of a match's record that are here, each with its length in bytes.
 
     Args:
         folder: folder of the records.
@@ -50,7 +50,7 @@ def take(folder: Path, match_id: str, part: Copied) -> Taken:
         part: what the other machine answered when it was told what this copy has (`have`).
 
     Raises:
-        UserError: if it can't be written.
+        UserError: if the copy can't be written.
     """
     packed = files.packed_path(folder, match_id)
     try:
@@ -70,7 +70,7 @@ def take(folder: Path, match_id: str, part: Copied) -> Taken:
 
 
 def _finish(folder: Path, match_id: str, packed: Path) -> None:
-    """Give the whole packed record its name; its segments are not needed any more."""
+    """Rename the complete packed copy to its final name, and delete the match's segments."""
     unfinished = _unfinished(packed)
     if not unfinished.exists():
         return
@@ -83,13 +83,13 @@ def _finish(folder: Path, match_id: str, packed: Path) -> None:
 
 
 def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
-    """Return whether a part belongs to a match's record, and begins where what is here ends.
+    """Return whether a part belongs to a match's record, and begins where the copy here ends.
 
-    A court that is not what it seems must write nothing else on this machine.
+    So a machine that only pretends to be the court can't write other files here.
 
     Args:
         match_id: the match.
-        have: bytes that are here, by the file's name.
+        have: length in bytes of each file that is here, by its name.
         part: what came.
     """
     segment = files.segment_name(Path(part.file))
@@ -99,5 +99,5 @@ def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
 
 
 def _unfinished(packed: Path) -> Path:
-    """Return the name of a packed record while parts of it are missing."""
+    """Return the path of a packed copy that is not complete yet."""
     return packed.with_name(f"{packed.name}.copy")

@@ -57,7 +57,7 @@ class ContestEntry(msgspec.Struct, frozen=True, kw_only=True):
         return hashlib.blake2b(msgspec.msgpack.encode(parts), digest_size=16).hexdigest()
 
     def join(self, seat: int, team: str) -> JoinSeat:
-        """Return the join with which the team takes a seat."""
+        """Return the request with which the team takes a seat, made from this entry."""
         postures, locomotion = (
             None if data is None else SentFile(name, data)
             for name, data in zip(GAIT_NAMES, (self.postures, self.locomotion), strict=True)
@@ -78,17 +78,18 @@ class HandedIn:
     """As in `ContestEntry`."""
     picture: bytes | None = None
     wrong: FileRefused | None = None
-    """The mistakes of workbooks; None: there are none."""
+    """The error with all mistakes in workbooks; None: there are no mistakes."""
     taken: tuple[str, ...] = ()
     """Names of the files that were taken from a folder."""
     made: bool = False
-    """Whether level B was made from the postures."""
+    """Whether the locomotion file (level B) was made from the postures, because the team has
+    none."""
     notes: tuple[Phrase, ...] = ()
     """Remarks on the folder and on its workbook."""
 
     @property
     def entry(self) -> ContestEntry:
-        """The entry that the contest keeps once it is weighed in."""
+        """The entry as the contest keeps it once these files are weighed in."""
         return ContestEntry(
             robot=self.robot.data,
             postures=self.gaits.postures.data if self.gaits.postures else None,
@@ -100,7 +101,7 @@ class HandedIn:
 
 
 def hand_in(files: SeatFiles, robot: str) -> HandedIn:
-    """Make what a team hands in of its files: workbooks become text, as for a court.
+    """Turn a team's files into the form that is weighed in: workbooks become text, as for a court.
 
     If there is no locomotion file, level B is made from the postures, as on the page /play.
 
@@ -231,7 +232,7 @@ def _check_program(name: str, source: bytes) -> None:
 def _imports(node: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield each import below a node: its line, and the package or module that it needs.
 
-    What a program tries to import (`try`) may be missing.
+    Imports inside a `try` are left out, because the program can do without them.
     """
     match node:
         case ast.Try():
@@ -247,7 +248,7 @@ def _imports(node: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def _is_installed(module: str) -> bool:
-    """Return whether a module is there; nothing of it runs."""
+    """Return whether a module is installed here, without running its code."""
     if module.startswith("."):  # a bot is in no package
         return False
     try:
@@ -324,16 +325,16 @@ class EntryFolder:
         return entry
 
     def others(self, entry_hash: str) -> list[str]:
-        """Return the names in an entry's folder that are no files of it.
+        """Return the names in an entry's folder that are not among the entry's files.
 
         Raises:
-            UserError: if the folder can't be read, or the entry is not whole.
+            UserError: if the folder can't be read, or files of the entry are missing or changed.
         """
         known = _files(self.load(entry_hash))
         return [name for name in regular.names(self.path, entry_hash) if name not in known]
 
     def _read(self, entry_hash: str, name: str) -> bytes:
-        """Read a file of an entry; anybody may have made the folder."""
+        """Read a file of an entry; follow no link, because anybody may have made the folder."""
         folder = self.path.parent  # so that a link in place of the folder of entries is found
         return regular.read(folder, self.path.name, entry_hash, name, most_bytes=_MOST_BYTES)
 

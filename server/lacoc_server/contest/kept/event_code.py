@@ -9,10 +9,10 @@ from lacoc_shared.words import say
 
 
 class EventCode:
-    """The event code; it is on the disk once it was changed.
+    """The event code. Once the organiser has changed it, a file has the newest one.
 
     Args:
-        path: the file of a changed code.
+        path: the file for a changed code.
         first: the code until it is changed.
 
     Raises:
@@ -30,10 +30,10 @@ class EventCode:
             raise UserError(say("command.cannot-read", path=str(path), why=str(error))) from None
 
     def change(self) -> None:
-        """Make another code.
+        """Replace the code by a new one, chosen by chance, and write it to the file.
 
         Raises:
-            UserError: if it can't be written.
+            UserError: if the file can't be written.
         """
         code = new_code()
         try:

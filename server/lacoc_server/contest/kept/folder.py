@@ -60,7 +60,9 @@ class ContestFolder:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """Run the contest in this process alone; a killed process does not keep others out.
+        """In the block, keep all other processes from running the contest.
+
+        A killed process locks nobody out.
 
         Raises:
             UserError: if another process runs the contest, or the folder can't be written.
@@ -97,5 +99,8 @@ def file_hash(path: Path) -> str:
 
 
 def hash_of(data: bytes) -> str:
-    """Return the hash of a file's bytes, as `file_hash`."""
+    """Return the hash of bytes, hexadecimal.
+
+    `file_hash` gives the same for a file of these bytes.
+    """
     return hashlib.blake2b(data, digest_size=16).hexdigest()

@@ -1,7 +1,7 @@
-"""What this machine is to a contest: its office, a copy of it, or an office that goes on elsewhere.
+"""The role of this machine in a contest: its office, a copy of it, or a former office.
 
-Only the office's folder takes facts. The file is beside the facts, so every program that would
-append something finds it.
+Facts may be appended only in the office's folder. The file with the role is beside the facts, so
+every program that appends facts reads it first.
 """
 
 from pathlib import Path
@@ -15,24 +15,25 @@ from lacoc_shared.words import say
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What a folder of a contest is."""
+    """The role of a contest's folder on this machine, and what it says about other machines."""
 
     role: Literal["office", "copy", "retired"] = "office"
-    """copy: another machine's office is copied here. retired: the office goes on elsewhere, and
-    this folder is what it was before."""
+    """office: the contest is run here. copy: another machine's office is copied here. retired: the
+    office went on at another machine, and no more facts are appended here."""
     office: str = ""
-    """Of a copy: address of the office that is copied."""
+    """For a copy: address of the office that is copied."""
     known: tuple[str, ...] = ()
-    """Of an office: addresses of machines that were the office, or copy it now."""
+    """For an office: addresses of machines that were the office before, or copy it now."""
     copied_ms: int = 0
-    """Of a copy: when all of it was as it was at the office, in milliseconds since 1970, UTC; 0: it
-    never was."""
+    """For a copy: the last time at which all of it was equal to the office's folder, in
+    milliseconds since 1970, UTC; 0: never yet."""
     ends: bool = False
-    """Of a copy: whether the program that copies shall end, because the office goes on here."""
+    """For a copy: whether the program that copies must end, because the office goes on at this
+    machine."""
 
 
 def path_of(facts: Path) -> Path:
-    """Return the file's path.
+    """Return the path of the file with this machine's role.
 
     Args:
         facts: path of the contest's facts.
@@ -41,7 +42,7 @@ def path_of(facts: Path) -> Path:
 
 
 def read(path: Path) -> Machine:
-    """Return what a machine is; without a file it is the office.
+    """Return this machine's role; if there is no file, it is the office.
 
     Raises:
         UserError: if the file can't be read.
@@ -56,10 +57,10 @@ def read(path: Path) -> Machine:
 
 
 def save(path: Path, machine: Machine) -> None:
-    """Write what a machine is.
+    """Write this machine's role to its file.
 
     Raises:
-        UserError: if it can't be written.
+        UserError: if the file can't be written.
     """
     try:
         write(path, msgspec.json.encode(machine))
@@ -72,7 +73,7 @@ def check_office(machine: Machine) -> None:
     """Check that a machine is its contest's office.
 
     Raises:
-        UserError: if it is not; the message says what to do.
+        UserError: if it is a copy or a former office; the message says what to do.
     """
     if machine.role == "copy":
         raise UserError(say("standby.is-copy", at=machine.office))

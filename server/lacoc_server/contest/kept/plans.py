@@ -26,11 +26,12 @@ _SETTINGS = StageSettings.__struct_fields__
 _DRAWS = get_args(Draw)
 _AT_ONCE = _DRAWS[0]
 _TEAMS_FOR_THIRD = 4
-"""With fewer teams, no two teams lose a semi-final."""
+"""Least number of teams with which there is a match for place 3: with fewer, no two teams lose a
+semi-final."""
 
 
 class _StageEntries(msgspec.Struct, frozen=True, kw_only=True):
-    """What a stage's table in the contest file has, besides the entries of `StageSettings`."""
+    """Entries of a stage's table in the contest file that are not in `StageSettings`."""
 
     format: str
     after: str = ""
@@ -51,7 +52,7 @@ OPEN = "open"
 
 
 class _OpenTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the table of an open stage in the contest file has."""
+    """All entries that the table of an open stage can have in the contest file."""
 
     format: str
     arena: str = _USUAL_ARENA
@@ -97,7 +98,7 @@ def open_stage(contest: ContestFile, file: Path) -> OpenStage | None:
 
 
 def plans(contest: ContestFile, file: Path) -> list[Planned]:
-    """Read the stages of a contest file, without an open one.
+    """Read the stages of a contest file, without the open stage.
 
     Args:
         contest: the contest file.
@@ -131,7 +132,7 @@ def _read(
         name: its name.
         table: its table in the file.
         contest: the contest file.
-        before: the stages before it, by name; None: that one is wrong.
+        before: the stages before it in the file, by name; None: that stage has wrong entries.
 
     Raises:
         UserError: at the first wrong entry.
@@ -151,7 +152,7 @@ def _read(
 
 
 def doubts(stages: Sequence[Planned]) -> Iterator[Phrase]:
-    """Yield what will surprise people: a knockout in which teams of a group meet again."""
+    """Yield warnings about knockouts in which teams of one earlier group can meet again."""
     known = {plan.stage: plan for plan in stages}
     for plan in stages:
         before = known.get(plan.after)
@@ -176,7 +177,7 @@ def game(plan: Planned) -> Arena:
 
 
 def note_plans(store: FactStore, wanted: list[Planned]) -> None:
-    """Append the plans that are new or have changed.
+    """Append, as facts, the plans that are new or have changed.
 
     Raises:
         UserError: if the plan of a stage that is drawn has changed; nothing is appended then.
@@ -238,11 +239,11 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
 
 
 def _check(plan: Planned, before: Mapping[str, Planned | None], courts: Sequence[str]) -> None:
-    """Check what a plan names, and that its settings fit each other.
+    """Check that the names in a plan exist, and that its settings fit each other.
 
     Args:
         plan: the plan of a stage.
-        before: the plans of the stages before it, by name; None: that one is wrong.
+        before: the plans of the stages before it, by name; None: that stage has wrong entries.
         courts: names of the contest's courts.
 
     Raises:
@@ -268,7 +269,7 @@ def _check(plan: Planned, before: Mapping[str, Planned | None], courts: Sequence
 
 
 def _most_teams(plan: Planned | None, before: Mapping[str, Planned | None]) -> int:
-    """Return how many teams a stage has at most; 0: that is not known."""
+    """Return how many teams a stage can have at most by its plans; 0: the plans set no limit."""
     if plan is None:
         return 0
     earlier = _most_teams(before[plan.after], before) if plan.after else 0

@@ -23,9 +23,9 @@ from lacoc_shared.words import say
 
 FACTS, SHEET, STANDINGS, GAMES = "facts.json", "contest.json", "standings.csv", "games.csv"
 ENTRIES, RECORDS = contests.ENTRIES, "records"
-"""Names of what a published folder has."""
+"""Names of the files and folders in a published folder."""
 _SITES = "lacoc.site"
-"""Entry points that add the pages: functions that are given the folder."""
+"""Group of the entry points that add pages: each is a function that takes the published folder."""
 
 
 def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
@@ -73,7 +73,7 @@ def tables(sheet: ContestSheet) -> dict[str, bytes]:
 
 
 def records_of(facts: Iterable[AnyFact]) -> dict[str, str]:
-    """Return the hashes of all records by file name; "": it is not known."""
+    """Return the hash of each record by its file name; "": the facts do not have this hash."""
     played = (fact for fact in facts if isinstance(fact, Played) and fact.record)
     return {Path(fact.record).name: fact.record_hash for fact in played}
 
@@ -87,7 +87,7 @@ def _save_record(source: Path, to: Path, wanted: str) -> None:
     """Copy a record, or pack a copy of one that the court keeps open until its next match.
 
     Raises:
-        UserError: if it is missing, or has not the hash that the facts want.
+        UserError: if it is missing, or its hash is not the one in the facts.
     """
     segments = segment_paths(source.parent, source.stem)
     try:
@@ -104,7 +104,7 @@ def _copy(source: Path, to: Path, wanted: str) -> None:
     """Copy a record; one that is there already is not copied again.
 
     Raises:
-        UserError: if it is missing, or has not the hash that the facts want.
+        UserError: if it is missing, or its hash is not the one in the facts.
     """
     if not regular.is_regular(source):
         raise UserError(say("contest.no-record", file=str(source)))

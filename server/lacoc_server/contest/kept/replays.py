@@ -1,4 +1,4 @@
-"""From when everybody may see the records of a contest: a record holds the gaits of both teams."""
+"""Hides records that not everybody may see yet, because a record holds the gaits of both teams."""
 
 from msgspec.structs import replace
 
@@ -9,11 +9,11 @@ from lacoc_shared.messages.desk import Replays
 def shown(sheet: ContestSheet, when: Replays) -> ContestSheet:
     """Return a sheet that names only the records which everybody may see now.
 
-    A gateway serves no other record of a contest that keeps some back.
+    If a contest keeps records back, its gateway serves only the records that this sheet names.
 
     Args:
         sheet: the sheet, which names all records.
-        when: from when the contest shows them.
+        when: when the contest shows records: at once, after their stage, or at the end.
     """
     if when == "at-once":
         return sheet

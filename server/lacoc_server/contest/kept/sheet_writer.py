@@ -13,13 +13,13 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _SHEET_S = 1.0
-"""Shortest time between two sheets."""
+"""Shortest time between two writings of the sheet [s]."""
 _LEAST_SHARE = 10
-"""The time to the next sheet is at least this many times the time that the last one took. With 200
-teams the ratings take a second."""
+"""After a sheet, wait at least this many times as long as it took to compute. With 200 teams the
+ratings alone take a second."""
 
 Progress = Callable[[int, int], None]
-"""Called with how many matches are decided, and how many there are so far."""
+"""Called with the number of decided matches, and the number of all matches so far."""
 
 
 class SheetWriter:
@@ -27,7 +27,7 @@ class SheetWriter:
 
     Args:
         where: the contest.
-        progress: told about each change.
+        progress: called with the numbers of decided and of all matches, after each change.
     """
 
     def __init__(self, where: ContestFolder, progress: Progress) -> None:
@@ -43,9 +43,10 @@ class SheetWriter:
         contest: Contest,
         expected: Mapping[str, tuple[str, int]] = sheets.EXPECTED_NOTHING,
     ) -> None:
-        """Report progress if the contest has changed; write its sheet if that is due.
+        """Report progress if the contest has changed.
 
-        Call it again and again, also without a change: a change may have to wait for its sheet.
+        Write its sheet if it has changed and enough time has passed. Call this again and again,
+        also without a change, so that a sheet that had to wait is written.
 
         Args:
             contest: the contest as it is now; the same object as before if nothing has changed.
@@ -64,7 +65,9 @@ class SheetWriter:
             self.write()
 
     def write(self) -> ContestSheet:
-        """Write the sheet without what is still secret, for everybody; return the complete sheet.
+        """Write the sheet for pages, without the records that are still hidden.
+
+        Return the complete sheet.
 
         Raises:
             UserError: if it can't be written.

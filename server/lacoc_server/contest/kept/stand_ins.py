@@ -1,6 +1,6 @@
-"""The list of courts that have left their machine, and are run on the office's since.
+"""The list of courts of other machines that now run on the office's, because theirs was lost.
 
-An organiser who wants a court back on its own machine removes its line while it has no match.
+To give a court back to its own machine, an organiser removes its line while the court has no match.
 """
 
 from pathlib import Path
@@ -11,13 +11,13 @@ from lacoc_shared.words import say
 
 
 def stand_ins(path: Path) -> list[str]:
-    """Return the names of these courts.
+    """Return the names of the courts in the list.
 
     Args:
         path: the list; a name stands on each line.
 
     Raises:
-        UserError: if it can't be read.
+        UserError: if the list can't be read.
     """
     try:
         return path.read_text(encoding="utf-8").split()

@@ -17,7 +17,8 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 _APPLICATION, _VERSION = 0x4C434654, 1
-"""Numbers in the file's header that mark facts: "LCFT" in ASCII, and the version of `_TABLES`."""
+"""Numbers in the database's header that mark a file of facts: "LCFT" in ASCII, and the version of
+`_TABLES`."""
 _INSERT = "INSERT INTO facts VALUES (?, ?, ?)"
 _TABLES = (
     "CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL)",
@@ -30,7 +31,7 @@ class FactStore:
     """The facts of a contest on the disk; several programs can use one file.
 
     Used as a context manager. When `append` returns, all its facts are on the disk; if it raises an
-    error, none is.
+    error, none of them is.
 
     Args:
         path: the file; it is made if there is none.
@@ -59,7 +60,7 @@ class FactStore:
 
     @contextmanager
     def decided_by(self, name: str) -> Iterator[None]:
-        """In the block, facts that are appended are decided by one of the staff."""
+        """In the block, note this member of staff in all facts that are appended."""
         before, self._by = self._by, name
         try:
             yield
@@ -67,7 +68,7 @@ class FactStore:
             self._by = before
 
     def append(self, *facts: AnyFact) -> None:
-        """Append facts; they get their places, ids and times here.
+        """Append facts; the store gives each its number, id, time and who decided it.
 
         Raises:
             UserError: if the file can't be written; nothing is appended then.
@@ -75,7 +76,9 @@ class FactStore:
         self.decide(lambda _: facts)
 
     def decide(self, decision: Callable[[tuple[AnyFact, ...]], Iterable[AnyFact]]) -> None:
-        """Append what follows from all facts; no other program appends anything meanwhile.
+        """Append facts that `decision` makes from all facts.
+
+        No other program can append any meanwhile.
 
         Args:
             decision: is given all facts, and returns those to append. If it raises an exception,
@@ -88,7 +91,7 @@ class FactStore:
         self._decide(decision, machine.check_office)
 
     def take_over(self) -> None:
-        """Append that the office goes on at this machine, which has a copy of its facts.
+        """Append the fact that the office goes on at this machine, which has a copy of its facts.
 
         Raises:
             UserError: if the file can't be read or written; nothing is appended then.
@@ -118,11 +121,14 @@ class FactStore:
             raise self._problem(error) from None
 
     def bodies(self, after: int, most_bytes: int) -> list[str]:
-        """Read facts as they are stored, in their order: at least one if there is one.
+        """Read the stored text of facts, in their order.
+
+        The first of them is read whatever its length.
 
         Args:
-            after: number of the last fact before them.
-            most_bytes: how long all of them may be.
+            after: number of the fact after which to begin.
+            most_bytes: how many characters all texts may have together; a single fact may be
+                longer.
 
         Raises:
             UserError: if the file can't be read.
@@ -140,11 +146,11 @@ class FactStore:
         return found
 
     def copy(self, facts: Sequence[AnyFact], bodies: Sequence[str]) -> None:
-        """Store facts of another machine as they are there.
+        """Store facts copied from another machine, with the same text as there.
 
         Args:
             facts: the facts, which follow those that are here.
-            bodies: how they are stored there.
+            bodies: the stored text of each of these facts on the other machine.
 
         Raises:
             UserError: if the file can't be written; nothing is stored then.
@@ -182,7 +188,9 @@ class FactStore:
 
 
 def _id(number: int, moves: int) -> str:
-    """Return the id of a fact; two machines give no two facts the same one.
+    """Return an id for a fact.
+
+    A machine that takes over as the office never gives an id that exists.
 
     Args:
         number: the fact's place among all facts.

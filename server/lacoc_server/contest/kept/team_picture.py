@@ -12,13 +12,14 @@ SIDE_PX = 192
 """Width and height of a team's picture."""
 _FORMATS = ("PNG", "JPEG", "WEBP", "GIF")
 _MOST_PX = 4096
-"""Most pixels of either side of a picture that is read: a small file can unpack to gigabytes."""
+"""Most pixels that a picture to read may have on either side. A small file can unpack to
+gigabytes."""
 
 
 def small_picture(file: SentFile) -> bytes:
-    """Read a picture, and make the team's picture of its middle; nothing else of it is kept.
+    """Make a team's picture from the middle of a picture file; keep nothing else from the file.
 
-    So a picture brings along no place where it was taken, and no other file behind its end.
+    So the place where it was taken is lost, and so is anything hidden after the end of the picture.
 
     Args:
         file: a PNG, JPEG, WebP or GIF file; of a moving picture the first one is taken.
@@ -27,7 +28,7 @@ def small_picture(file: SentFile) -> bytes:
         A WebP file, `SIDE_PX` wide and high.
 
     Raises:
-        UserError: if it is no such picture, is damaged or too large.
+        UserError: if the file is of another kind, damaged or too large.
     """
     try:
         found = Image.open(io.BytesIO(file.data), formats=_FORMATS)

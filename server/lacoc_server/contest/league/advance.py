@@ -1,4 +1,4 @@
-"""Why each team of a stage is in it, and has its seed: places before, ties, pairs apart; pure."""
+"""Reasons why each team of a stage is in it and has its seed; pure."""
 
 from collections.abc import Iterator
 
@@ -10,11 +10,11 @@ from lacoc_server.contest.league.timetable.seeding import by_rank, moved_apart
 from lacoc_shared.words import Phrase, say
 
 _ACROSS = ("points", "difference", "scored")
-"""What orders equal places of several groups (`StageView.ranking`)."""
+"""Codes that order teams with the same place in different groups (`StageView.ranking`)."""
 
 
 def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[Phrase, ...]:
-    """Say of each team of a stage why it goes on into it, and why its seed is not its rank.
+    """Say why each team of a stage is in it, and, if its seed is not its rank, why.
 
     Args:
         contest: the contest.
@@ -22,8 +22,8 @@ def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[
         entries: its teams by their seeding.
 
     Returns:
-        A reason for each team; none if the stage follows no stage that is drawn, and its teams have
-        the order in which they entered.
+        A reason for each team. Empty if the stage follows no drawn stage and its teams are in the
+        order in which they entered: then there is nothing to explain.
     """
     before = next((view for view in contest.stages if view.name == plan.after), None)
     how = FORMATS.get(plan.format)
@@ -61,9 +61,9 @@ def _reason(
     gone: set[str],
     moved: Phrase | None,
 ) -> Phrase:
-    """Say why a team goes on: its place, and what put it before whoever is just behind it.
+    """Say why a team goes on: its place, and what ranked it above the team just behind it.
 
-    Of the last one of those that are tied, what put it behind the one before.
+    If it is the last of several tied teams, say instead what ranked it below the team before it.
     """
     at = next(at for at, row in enumerate(table.rows) if row.team == team)
     row, *behind = table.rows[at:]
@@ -91,14 +91,17 @@ def _reason(
 
 
 def _is_tied(table: Table, row: Standing, behind: Standing) -> bool:
-    """Return whether only a tie-break puts a team before the next one."""
+    """Return whether a team is before the next one only by a tie-break, at equal points."""
     if behind.out or not behind.decided_by:
         return False
     return "points" not in table.tie_breaks or row.points == behind.points
 
 
 def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) -> Standing | None:
-    """Return the best team at the same place of another group that does not go on; None: none."""
+    """Find the best team with the same place in another group that does not go on.
+
+    Return None if there is no such team.
+    """
     place = next(there for there, row in _placed(own) if row.team == team)
     same = (
         row
@@ -112,6 +115,6 @@ def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) 
 
 
 def _by(row: Standing, other: Standing) -> str:
-    """Return what puts a team before another one of the same place in another group."""
+    """Return the code that puts a team before one with the same place in another group."""
     values = ((one.points, one.scored - one.conceded, one.scored) for one in (row, other))
     return next((code for code, a, b in zip(_ACROSS, *values, strict=True) if a != b), "seed")

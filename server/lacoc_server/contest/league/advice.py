@@ -7,7 +7,7 @@ from lacoc_shared.words import Phrase
 
 
 def advice(events: Iterable[Event]) -> tuple[Phrase, ...]:
-    """Return why the court advised to play a match again at last; empty: it did not."""
+    """Return the reasons of a court's newest advice to play a match again; empty: it gave none."""
     reasons: object = ()
     for event in events:
         if event.kind == "advice":

@@ -1,4 +1,4 @@
-"""A contest as it follows from its facts."""
+"""Computes a contest from its facts: teams, stages, matches and tables; also its pauses."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -51,7 +51,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
     matches: tuple[ContestMatch, ...]
     tables: tuple[Table, ...]
     rounds_to_draw: int
-    """Rounds that are still to be drawn; in some formats fewer may be enough."""
+    """How many more rounds are drawn at most; some formats end earlier if the places are clear."""
 
     @property
     def name(self) -> str:
@@ -60,7 +60,7 @@ class StageView(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def may_draw(self) -> bool:
-        """Whether the next round can be drawn: one is left, and all drawn matches are decided."""
+        """Whether the next round can be drawn: all matches are decided, and a round is left."""
         return self.rounds_to_draw > 0 and all(match.decided for match in self.matches)
 
     @property
@@ -109,13 +109,14 @@ class Day(msgspec.Struct, frozen=True, kw_only=True):
     """Whether games are called."""
 
     paused: bool
-    """True: not before somebody says so."""
+    """True: no game is called until somebody resumes the contest."""
     until_ms: int
-    """Not before this time, in milliseconds since 1970, UTC; 0: at any time."""
+    """No game is called before this time, in milliseconds since 1970, UTC; 0: there is no such
+    time."""
     reason: str
 
     def is_held(self, now_ms: int) -> bool:
-        """Return whether no game is called now."""
+        """Return whether, at this time, a pause or a shift keeps all games from being called."""
         return self.paused or now_ms < self.until_ms
 
 
@@ -123,21 +124,21 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that follows from the facts."""
 
     teams: tuple[Team, ...]
-    """In the order in which they entered."""
+    """The teams, in the order in which they entered."""
     closed: bool
     """Whether nobody can enter any more."""
     stages: tuple[StageView, ...]
-    """In the order in which they were drawn."""
+    """The drawn stages, in the order of their draws."""
     planned: tuple[Planned, ...]
     """The plans of stages that are not drawn yet, in the order in which they were first made."""
     undrawn: frozenset[str]
-    """Those of them whose draw was taken back."""
+    """Names of the planned stages whose draw was taken back."""
     running: tuple[Called, ...]
     """Games that are on a court now."""
     moves: tuple[Moved, ...]
     """The newest move of each match that was moved, in the order in which they were made."""
     decisions: tuple[OfDecision, ...]
-    """What people decided, in the order in which they did."""
+    """The facts about what people decided, in their order."""
     day: Day
     shifted: Shifted | None
     """The newest shift that was not taken back; None: there is none."""
@@ -168,14 +169,15 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Changes(msgspec.Struct, frozen=True, kw_only=True):
-    """What one more fact would change."""
+    """The differences between two contests, for example before and after one more fact."""
 
     matches: tuple[tuple[ContestMatch | None, ContestMatch | None], ...]
-    """Each match that has other teams, another state or another winner: before and after."""
+    """Each match that has other teams, another state or another winner: the match before and after.
+    None: it is not in that contest."""
     ranks: tuple[tuple[str, str, int, int], ...]
     """Each team with another rank: stage, team, rank before and after."""
     leaving: tuple[str, ...]
-    """The teams that play no more."""
+    """The teams that take part in the contest before, and have left it in the contest after."""
 
 
 def changes(before: Contest, after: Contest) -> Changes:
@@ -241,7 +243,7 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
 
 
 def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contest:
-    """Compute a contest from facts in their order; errors as with `compute`."""
+    """Compute a contest from facts in their order; the errors are those of `compute`."""
     unused: dict[str, Phrase] = {}
     teams = entered_teams(known, unused)
     drawn, planned = drawn_stages(known, teams, formats, unused)
@@ -287,7 +289,7 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
 
 
 def _of_newest_draws(facts: Sequence[AnyFact], unused: Mapping[str, Phrase]) -> list[AnyFact]:
-    """Return the facts without those about matches of draws that were taken back since."""
+    """Return the facts without those about matches of a draw that was taken back afterwards."""
     undrawn = {
         fact.stage: number
         for number, fact in enumerate(facts)
@@ -301,7 +303,7 @@ def _of_newest_draws(facts: Sequence[AnyFact], unused: Mapping[str, Phrase]) -> 
 
 
 class Newest:
-    """Computes a contest whose facts grow: again only if the facts are others than last time.
+    """Keeps the newest computed contest, and computes it again only if the facts have changed.
 
     Args:
         formats: the known formats by name.
@@ -313,7 +315,7 @@ class Newest:
         self._contest: Contest | None = None
 
     def of(self, facts: tuple[AnyFact, ...]) -> Contest:
-        """Return the contest that follows from facts; errors as with `compute`."""
+        """Return the contest that follows from facts; the errors are those of `compute`."""
         if self._contest is None or facts != self._facts:
             self._contest = compute(facts, self._formats)
             self._facts = facts
@@ -365,7 +367,7 @@ def _view(
 def _note_unused(
     match: ContestMatch | None, about: Sequence[OfMatch], unused: dict[str, Phrase]
 ) -> None:
-    """Note the results and decisions that a match does not use."""
+    """Note results and decisions that have no effect on their match, each with the reason."""
     used = {game.fact for game in match.games} if match else set()
     teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
     counted, is_void, _ = counting(teams, about)
@@ -384,7 +386,7 @@ def _note_unused(
 def _why_unused(
     match: ContestMatch, fact: Played | Replaced, counts: CountedGame | None, is_void: bool
 ) -> Phrase:
-    """Say why a match does not use a result.
+    """Say why a result has no effect on its match.
 
     Args:
         match: the match.
@@ -406,7 +408,7 @@ def _why_unused(
 
 
 def _running(facts: Sequence[AnyFact]) -> tuple[Called, ...]:
-    """Find the games that are on a court: called, and neither recalled nor ended since."""
+    """Find the games that are on a court: called, and since then neither taken back nor ended."""
     running: dict[str, Called] = {}
     for fact in facts:
         if isinstance(fact, Called):
@@ -421,7 +423,7 @@ def _running(facts: Sequence[AnyFact]) -> tuple[Called, ...]:
 
 
 def _shifts(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Shifted]:
-    """Find the shifts that were not taken back, by their ids and in their order."""
+    """Find the shifts that were not taken back, by the ids of their facts, in their order."""
     shifts: dict[str, Shifted] = {}
     for fact in facts:
         if isinstance(fact, Shifted):
@@ -432,7 +434,10 @@ def _shifts(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Sh
 
 
 def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
-    """Find the newest move of each match; what was shifted since is later."""
+    """Find the newest move of each match.
+
+    A later shift also postpones the earliest time of a move.
+    """
     moves: dict[str, Moved] = {}
     for fact in facts:
         if isinstance(fact, Moved):
@@ -449,14 +454,14 @@ def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
 def end_ms(begin_ms: int, length_ms: int) -> int:
     """Return when a pause ends, in milliseconds since 1970, UTC.
 
-    One of a minute or more ends at a full minute: pages tell it so, and nobody is called before.
+    A pause of a minute or more ends at a full minute, because pages show its end without seconds.
     """
     ends_ms = begin_ms + length_ms
     return ends_ms if length_ms < _MINUTE_MS else -(-ends_ms // _MINUTE_MS) * _MINUTE_MS
 
 
 def _day(facts: Sequence[AnyFact]) -> Day:
-    """Return whether games are called: the newest pause, and what was shifted since."""
+    """Return whether games are called, as the newest pause and all later shifts say."""
     day = Day(paused=False, until_ms=0, reason="")
     for fact in facts:
         match fact:
@@ -476,7 +481,7 @@ def _announced(facts: Sequence[AnyFact]) -> Announced | None:
 
 
 def _stages_ended(facts: Sequence[AnyFact]) -> dict[str, int]:
-    """Return for each stage when its newest game ended [ms]."""
+    """Return for each stage when its newest game ended, in milliseconds since 1970, UTC."""
     ended: dict[str, int] = {}
     for fact in facts:
         if isinstance(fact, Played):
@@ -488,7 +493,7 @@ def _stages_ended(facts: Sequence[AnyFact]) -> dict[str, int]:
 def _ended(facts: Sequence[AnyFact]) -> dict[str, tuple[str, int]]:
     """Return for each team its newest game that has ended.
 
-    The value of a team is the id of the game's pairing, and when the game ended [ms].
+    Each value is the id of the game's pairing, and when it ended, in milliseconds since 1970, UTC.
     """
     ended: dict[str, tuple[str, int]] = {}
     for fact in facts:

@@ -30,16 +30,16 @@ class Decided(msgspec.Struct, frozen=True, kw_only=True):
     """When it was made, in milliseconds since 1970, UTC."""
     what: Phrase
     pairing: str = ""
-    """The match; "": it is about a team or a stage."""
+    """Pairing of the match that was decided about; "": the decision is about a team or a stage."""
     stage: str = ""
-    """The stage whose draw it is; "": it is none."""
+    """The stage, if the decision is a draw by lot or by hand; else ""."""
     reason: str
     by: str = ""
     """Who of the staff made it; "": the organiser."""
 
 
 def decided(contest: Contest) -> tuple[Decided, ...]:
-    """Say what people decided, in the order in which they did."""
+    """Put the decisions of people into words, in their order."""
     return tuple(
         Decided(
             fact=fact.id,

@@ -1,4 +1,4 @@
-"""What is drawn: the teams and stages of a contest, before anything is played."""
+"""The teams and stages of a contest, computed from its facts."""
 
 import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -32,7 +32,7 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     files: str
-    """Hash of the files that it plays with."""
+    """Hash of the files with which it plays."""
     bot: str = ""
     """Name of the bot that plays for it; "": people play."""
     club: str = ""
@@ -40,7 +40,7 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     picture: bool = False
     """Whether a picture of the team is among its files."""
     withdrawn: bool = False
-    """Whether it has left, or another team takes its place."""
+    """Whether it has left the contest, by its own wish or for a substitute."""
     substitute: str = ""
     """The team that takes its place; "": none does."""
     disqualified: bool = False
@@ -61,7 +61,7 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
 
     Args:
         facts: in their order.
-        unused: is given the facts that change nothing, each with the reason.
+        unused: facts that change nothing are added here, by id, each with the reason.
     """
     teams: dict[str, Team] = {}
     closed = False
@@ -110,7 +110,7 @@ def drawn_stages(
     formats: Mapping[str, Format],
     unused: dict[str, Phrase],
 ) -> tuple[list[tuple[Planned, Stage]], list[Planned]]:
-    """Return the drawn stages, each with its plan, and then the plans of all other stages.
+    """Return the drawn stages, each with its plan, and the plans of the stages that are not drawn.
 
     The drawn stages are in the order of their draws.
     """
@@ -169,7 +169,7 @@ def drawn_stages(
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:
-    """Put a substitute in the place of its team, unless the substitute has a place of its own."""
+    """Put a substitute in its team's place, unless the substitute is in this stage already."""
     if fact.substitute in stage.entries:
         return stage
 
@@ -181,11 +181,11 @@ def _substituted(stage: Stage, fact: Substituted) -> Stage:
 
 
 def by_lot(teams: Iterable[str], lot: str) -> tuple[str, ...]:
-    """Return teams in the order of a lot: everybody who knows the lot can draw again.
+    """Return teams in the order that follows from a lot; everybody who knows the lot can check it.
 
     Args:
         teams: in any order.
-        lot: what was drawn in front of everybody; nobody may know it before.
+        lot: numbers or a word that were drawn in front of everybody; nobody may know them before.
     """
 
     def ticket(team: str) -> bytes:
@@ -200,12 +200,13 @@ def set_apart(
 ) -> tuple[str, ...]:
     """Change the order of teams as little as possible, so that fewer pairs clash.
 
-    Teams change places one pair after the other, near ones and low ones first, as long as that
-    leaves fewer clashes. So after two groups the seconds change places, and the winners stay.
+    Two teams at a time swap places, as long as that leaves fewer clashes. Swaps over a short
+    distance, and then of low places, are tried first. So after two groups the second-placed teams
+    swap, and the winners stay.
 
     Args:
         entries: the teams by their seeding.
-        clash: returns the pairs of an order that should not meet, and do.
+        clash: takes an order; returns the pairs that would meet in it, and should not.
     """
     while clashing := clash(entries):
         places = sorted({entries.index(team) for pair in clashing for team in pair}, reverse=True)

@@ -18,8 +18,8 @@ VERSION = 1
 
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
 Draw = Literal["at-once", "organiser"]
-"""When a stage is drawn: as soon as its teams are known, or when the organiser says so after that.
-Without a network nobody can say it, and all stages are drawn at once."""
+"""When a stage is drawn: "at-once" as soon as its teams are known, "organiser" only after that,
+when the organiser says so. Without a network all stages are drawn at once."""
 Outcome = Literal["left", "right", "draw", "void"]
 """Who won a game, by seat. "void": the game counts for nobody and must be played again."""
 
@@ -50,7 +50,7 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     club: Annotated[str, msgspec.Meta(max_length=64)] = ""
     """The school or club of the team; a stage may draw teams of one club apart. "": none."""
     reason: str = ""
-    """Why it entered although entries were closed; "" only while they are open."""
+    """Why it entered after entries were closed; "" if they were open."""
 
 
 class Closed(Fact, frozen=True, kw_only=True, tag="closed"):
@@ -88,32 +88,33 @@ class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
     bot: str = ""
     picture: bool = False
     reason: str = ""
-    """May be "" only while entries are open."""
+    """Why the files change; "" only while entries are open."""
 
 
 class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """How a stage is played. A format reads what it needs."""
+    """How a stage is played. Each format reads only some of these settings."""
 
     games: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Best of so many games; the sides are swapped after each game."""
     extra_games: Annotated[int, msgspec.Meta(ge=0, le=9)] = 1
-    """How many extra games are played at most while a match of a knockout is level."""
+    """In a knockout match that is level after `games`: how many extra games are played at most."""
     rounds: Annotated[int, msgspec.Meta(ge=0, le=999)] = 0
-    """Number of rounds, in a sequential stage the most; 0: the format's own number."""
+    """Number of rounds; in a sequential stage the largest number. 0: the format's own number."""
     places: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """How many first places must be decided before a sequential stage ends early."""
     confidence: Annotated[float, msgspec.Meta(ge=0.5, lt=1.0)] = 0.95
-    """With which probability they must then be right."""
+    """Probability with which these places must be the right ones before the stage ends early."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Number of groups of a round robin."""
     third_place: bool = False
     """True: the losers of the semi-finals of a single knockout play for place 3."""
     reset: bool = True
-    """True: who comes from the losers' side must win two finals of a double knockout."""
+    """True: if the team from the losers' bracket of a double knockout wins the final, a second
+    final decides."""
     tie_breaks: tuple[str, ...] = ()
     """Codes that order teams with equal points; empty: the format's own list."""
     options: dict[str, Any] = {}
-    """Entries for formats of other packages."""
+    """Further settings, which only formats of other packages read."""
 
 
 class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
@@ -131,17 +132,17 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """True: teams of one club do not meet in the first round, or in a group, if it can be avoided.
     """
     met_apart: bool = False
-    """True: nor do teams that met in the stage before."""
+    """True: teams that met in the stage before are kept apart in the same way."""
     break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
-    """Time between the end of the stages before it and its first game [s]."""
+    """Shortest time between the end of the stages before it and its first game [s]."""
     final_court: str = ""
     """The only court for its final; "": any court."""
     final_break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
-    """Time between its other games and its final [s]."""
+    """Shortest time between its last other game and its final [s]."""
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""
-    """The game."""
+    """Name of the arena, which is the game that is played."""
     arena_settings: dict[str, Any] = {}
     """Entries that replace those of the arena file."""
     limits: dict[str, float] = {}
@@ -154,8 +155,8 @@ class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
     stage: str
     entries: tuple[Name, ...]
     how: Literal["", "hand", "lot"] = ""
-    """"": by the ranking before. hand: in the order that the organiser gave, with a reason. lot: in
-    the order that follows from `lot` (`draws.by_lot`)."""
+    """"": by the ranking of the stage before, or by entry. hand: in the order that the organiser
+    gave, with a reason. lot: in the order that follows from `lot` (`draws.by_lot`)."""
     lot: Annotated[str, msgspec.Meta(max_length=64)] = ""
     """What was drawn in front of everybody: numbers of dice, a word."""
     reason: str = ""
@@ -169,7 +170,10 @@ class Undrawn(Fact, frozen=True, kw_only=True, tag="undrawn"):
 
 
 class RoundDrawn(Fact, frozen=True, kw_only=True, tag="round-drawn"):
-    """A round of a Swiss stage begins with these pairs. A later correction does not change them."""
+    """A round of a Swiss stage begins with these pairs.
+
+    A later correction of results does not change the pairs.
+    """
 
     stage: str
     round: Annotated[int, msgspec.Meta(ge=1)]
@@ -210,11 +214,11 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     record_hash: str = ""
     """Hash of that file (`lacoc_server.contest.kept.folder.file_hash`)."""
     steer: str = ""
-    """Name of the bot that steered a team without one, in a game without a network; "": none did,
-    or the fact is older.
-    """
+    """Name of the bot that steered teams without one, in a game without a network; "": no team
+    needed it, or an older version wrote the fact."""
     advice: tuple[Phrase, ...] = ()
-    """Why the court advised to play the game again; empty: it did not, or the fact is older."""
+    """Why the court advised to play the game again; empty: it did not, or an older version wrote
+    the fact."""
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
@@ -254,13 +258,17 @@ class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
 
 
 class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
-    """A match is played at another court or time. The newest one of a match counts."""
+    """A match is played at another court or time.
+
+    Of several moves of one match the newest counts.
+    """
 
     pairing: Name
     court: str = ""
     """The only court for it; "": any court."""
     before: str = ""
-    """Pairing of the match before which it comes; "": the order of the schedule."""
+    """Pairing of the match directly before which it is played; "": it keeps its place in the
+    schedule."""
     not_before_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
     """It is not called before this time, in milliseconds since 1970, UTC."""
 
@@ -269,18 +277,20 @@ class Paused(Fact, frozen=True, kw_only=True, tag="paused"):
     """No game is called until the contest goes on; games that were called are played."""
 
     until_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
-    """It goes on by itself then, in milliseconds since 1970, UTC; 0: when somebody says so."""
+    """When the contest goes on by itself, in milliseconds since 1970, UTC; 0: when somebody resumes
+    it."""
     reason: str = ""
 
 
 class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
-    """The contest goes on."""
+    """Somebody ends a pause or the wait of a shift: games are called again."""
 
 
 class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
     """Everything that has not happened yet is postponed by `by_ms`.
 
-    No game is called for that time, and appointed times of moved matches are later by it.
+    For this time no game is called. Earliest times of moved matches that are still to come are
+    later by it.
     """
 
     by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]
@@ -291,20 +301,20 @@ class Unshifted(Fact, frozen=True, kw_only=True, tag="unshifted"):
     """A shift is taken back: all is as if it had never been."""
 
     shift: Name
-    """Id of the fact that is taken back."""
+    """Id of the `Shifted` fact that is taken back."""
 
 
 class Announced(Fact, frozen=True, kw_only=True, tag="announced"):
-    """A line to all, until the next one."""
+    """The organiser shows a line on all pages; it replaces the line before."""
 
     text: Annotated[str, msgspec.Meta(max_length=200)]
-    """"": there is none any more."""
+    """The line; "": no line is shown any more."""
 
 
 class TakenOver(Fact, frozen=True, kw_only=True, tag="taken-over"):
     """The office goes on at another machine, from a copy of the facts before this one.
 
-    The machine before may have appended other facts since; those do not count.
+    The former machine may have appended facts after that copy; they do not count.
     """
 
 
@@ -321,7 +331,7 @@ OfDecision = (
     | Replay
     | Voided
 )
-"""What people decide, with a reason; no record can prove it."""
+"""Facts of decisions by people, most of them with a reason; no record can prove them."""
 OfTeam = Entered | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Drawn | Undrawn | RoundDrawn
@@ -338,7 +348,7 @@ _Kind = TypeVar("_Kind", bound=Fact)
 
 
 def new(kind: type[_Kind], **values: Any) -> _Kind:
-    """Make a fact that has no place among the facts yet; a store gives it one."""
+    """Make a fact without id and number; the store sets them when the fact is appended."""
     return kind(id="new", number=0, **values)
 
 
@@ -348,10 +358,10 @@ def generation(facts: Iterable[AnyFact]) -> int:
 
 
 def decisions(facts: Iterable[AnyFact]) -> tuple[OfDecision, ...]:
-    """Return what people decided, among what else happened.
+    """Return those facts that are decisions of people, without the other facts.
 
-    Entries and other files are decisions once entries are closed, and draws if they do not follow
-    from a ranking.
+    Entries and changes of files count as decisions only after entries are closed. Draws count if a
+    lot or the organiser made their order.
 
     Args:
         facts: in their order.

@@ -1,4 +1,4 @@
-"""What a match or a game is in its contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
+"""Names a match or a game of a contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
 
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.matches import ContestMatch
@@ -7,12 +7,12 @@ from lacoc_shared.words import Phrase, say
 
 
 def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
-    """Say what a match or a game is, as `fixture` does; the id of a pairing that is not there now.
+    """Name a match or a game, as `fixture` does; give the pairing's id if it is in no drawn stage.
 
     Args:
         contest: the contest.
         pairing: id of the match's pairing.
-        game: number of the game in its match, from 1; 0: the match is meant.
+        game: number of the game in its match, from 1; 0: name the match.
     """
     for view in contest.stages:
         for match in view.matches:
@@ -26,7 +26,7 @@ def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
 def fixture(
     contest: Contest, view: StageView, match: ContestMatch, game: int, *, stands: bool = False
 ) -> Phrase:
-    """Say what a game is in its contest: "Semi-final 1, game 2 of 3".
+    """Name a game of a contest: "Semi-final 1, game 2 of 3".
 
     Args:
         contest: the contest.
@@ -46,7 +46,7 @@ def fixture(
 
 
 def standing(match: ContestMatch) -> Phrase:
-    """Say how a match stands in games won, a drawn one half: "Ants 1½ : ½ Bees"."""
+    """Say how many games each team of a match has won; a draw is a half: "Ants 1½ : ½ Bees"."""
     first, second = match.seated
     drawn = sum(not game.winner for game in match.games)
     halves = [2 * sum(game.winner == team for game in match.games) + drawn for team in match.seated]
@@ -55,13 +55,13 @@ def standing(match: ContestMatch) -> Phrase:
 
 
 def _halves(count: int) -> str:
-    """Write a number of halves: 1½."""
+    """Write a number of halves, for example 3 as "1½"."""
     whole, half = divmod(count, 2)
     return f"{whole or '' if half else whole}{'½' if half else ''}"
 
 
 def match_fixture(contest: Contest, view: StageView, match: ContestMatch) -> Phrase:
-    """Say what a match is in its contest: "Semi-final 1"; arguments as in `fixture`."""
+    """Name a match of a contest: "Semi-final 1"; arguments as in `fixture`."""
     pairing = match.pairing
     number = int(pairing.id.rpartition(".")[2])
     knockouts = [one for one in contest.stages if any(map(_is_knockout, one.matches[:1]))]
@@ -104,5 +104,5 @@ def _winners(view: StageView, match: ContestMatch, stage: Phrase | None, number:
 
 
 def _is_knockout(match: ContestMatch) -> bool:
-    """Return whether the match is of a bracket."""
+    """Return whether a match is part of a knockout."""
     return match.pairing.loser_place is not None

@@ -1,4 +1,4 @@
-"""A match: a pairing with what is known of it: its teams, its games and who won."""
+"""A match: a pairing with what the facts say of it: its teams, its games and its winner."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Literal
@@ -20,15 +20,17 @@ from lacoc_server.contest.league.pairing import AnySource, Entrant, LoserOf, Pai
 from lacoc_shared.words import Phrase
 
 NOBODY = ""
-"""Stands for the team of a place that is empty for ever."""
+"""Stands for the team of a place that stays empty, and for the winner of a match that nobody
+won."""
 
 Team = str | None
-"""A team's name; NOBODY; None: not known yet."""
+"""A team's name. NOBODY: no team. None: the team is not known yet."""
 
 State = Literal["waits", "open", "decided", "off"]
-"""waits: a team is not known yet. off: the match is not needed."""
+"""waits: a team is not known yet. open: it can be played. decided: its result is fixed. off: it is
+not needed."""
 How = Literal["", "played", "extra", "difference", "seed", "walkover", "bye", "void"]
-"""How a match was decided; "" before that."""
+"""How a match was decided; "": it is not decided."""
 
 
 class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -40,18 +42,17 @@ class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     scores: tuple[int, int]
     outcome: Outcome
     record: str = ""
-    """File name of the record of what was played, also where a decision gave another result."""
+    """File name of the record of the played game; also if a decision replaced its result."""
     court: str = ""
-    """Where it was played; "": nobody knows, as of games without a network."""
+    """Name of the court that had the game; "": not known, as in games without a network."""
     began_ms: int = 0
-    """When that court was given it, in milliseconds since 1970, UTC; 0: nobody knows."""
+    """When the court was given the game, in milliseconds since 1970, UTC; 0: not known."""
     ruled: bool = False
-    """Whether the organiser gave this result, in place of what was played."""
+    """Whether the result is the organiser's, and replaces the played one."""
     advice: tuple[Phrase, ...] = ()
-    """Why the court advised to play the game again; empty: it did not, or the organiser gave the
-    result."""
+    """Why the court advised to play the game again; empty: it gave no advice, or `ruled`."""
     fact: str
-    """Id of the fact that says so."""
+    """Id of the fact that gives this result."""
 
     @property
     def winner(self) -> str:
@@ -64,26 +65,26 @@ class ContestMatch(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
 
     pairing: Pairing
     teams: tuple[Team, Team]
-    """By place of the pairing."""
+    """The teams of the pairing's first and second place."""
     state: State
     games: tuple[CountedGame, ...] = ()
     next_game: int = 0
-    """Number of the game to play; 0: none."""
+    """Number of the game to play next, from 1; 0: there is none."""
     next_seats: tuple[str, str] | None = None
-    """Who sits left and right in it."""
+    """The teams that sit left and right in the next game."""
     winner: Team = None
-    """NOBODY: decided without a winner; such as a draw."""
+    """The winner. NOBODY: decided without a winner, for example a draw. None: not decided."""
     loser: Team = None
     how: How = ""
 
     @property
     def decided(self) -> bool:
-        """Whether nothing is left to play."""
+        """Whether the match needs no more games."""
         return self.state in ("decided", "off")
 
     @property
     def seated(self) -> tuple[Team, Team]:
-        """The teams in the order in which people read them: who sits left in game 1 is first."""
+        """The teams in the order in which pages show them: who sits left in game 1 comes first."""
         return (self.games[0].teams if self.games else self.next_seats) or self.teams
 
     @property
@@ -102,11 +103,11 @@ class ContestMatch(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
 
 
 class StageRules(msgspec.Struct, frozen=True, kw_only=True):
-    """What decides the matches of a stage."""
+    """What `resolve` must know of a stage, besides its pairings and facts."""
 
     settings: StageSettings
     entries: tuple[str, ...]
-    """By seeding."""
+    """The teams by seeding."""
     decisive: bool
     """True: a match must have a winner."""
     balanced: bool
@@ -119,7 +120,7 @@ def resolve(
     gone: Collection[str],
     rules: StageRules,
 ) -> dict[str, ContestMatch]:
-    """Work out all matches of a stage.
+    """Compute all matches of a stage from its pairings and facts.
 
     Args:
         pairings: each pairing comes after the pairings that its sources name.
@@ -173,7 +174,7 @@ def _between(
     gone: Collection[str],
     rules: StageRules,
 ) -> ContestMatch:
-    """Work out the match of two teams."""
+    """Compute the match of a pairing whose two teams are known."""
     counted, is_void, absent = counting(teams, facts)
     if is_void:
         return _decided(pairing, teams, (), NOBODY, "void")
@@ -211,13 +212,14 @@ def _between(
 def counting(
     teams: tuple[str, str], facts: Iterable[OfMatch]
 ) -> tuple[dict[int, CountedGame], bool, set[str]]:
-    """Find what counts of a match between two teams.
+    """Find the facts that count in a match between two teams.
 
-    Facts about other teams are left out: they belong to a pairing that has changed since. Of two
-    results of the same game the first one counts, until a decision says otherwise.
+    Facts about other teams are left out: the pairing had other teams then. Of two results of the
+    same game the first one counts, until a decision says otherwise.
 
     Returns:
-        The games by number, whether the match is void, and the teams that did not appear.
+        The games that count, by number; whether the match is void; and the teams that did not
+        appear.
     """
     games: dict[int, CountedGame] = {}
     called: dict[int, Called] = {}
@@ -249,12 +251,12 @@ def counting(
 
 
 def fact_teams(fact: OfMatch) -> tuple[str, ...]:
-    """Return the teams that a fact names."""
+    """Return both teams that a fact names in `teams`; a fact without this field gives ()."""
     return getattr(fact, "teams", ())
 
 
 def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -> CountedGame:
-    """Make a game that counts: the result of a fact, and where and when it was played."""
+    """Make a game that counts, from the fact of its result, the game as played, and its call."""
     return CountedGame(
         number=fact.game,
         teams=fact.teams,
@@ -302,7 +304,7 @@ def _verdict(
 def _decided(
     pairing: Pairing, teams: tuple[str, str], games: Iterable[CountedGame], winner: str, how: How
 ) -> ContestMatch:
-    """Make a decided match. A match without a winner sends nobody on."""
+    """Make a decided match. Without a winner, no team goes on from it."""
     loser = next((team for team in teams if team != winner), NOBODY) if winner else NOBODY
     return ContestMatch(
         pairing=pairing,

@@ -26,7 +26,7 @@ class LoserOf(Source, frozen=True, tag="loser"):
 
 
 class Bye(Source, frozen=True, tag="bye"):
-    """Nobody; whoever meets nobody goes on without a match."""
+    """No team: the place stays empty, so the other team goes on without a match."""
 
 
 AnySource = Entrant | WinnerOf | LoserOf | Bye
@@ -40,14 +40,17 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     section: str
     """Part of the stage: a group ("a"), "w", "l" or "f" of a knockout, "r" of a Swiss stage."""
     round: int
-    """Round in its section, from 1."""
+    """Round within its section, from 1."""
     sources: tuple[AnySource, AnySource]
-    """The first place sits left in game 1, unless the format balances sides by what was played."""
+    """Sources of the first and the second place. The first place sits left in game 1, unless the
+    format is `balanced`."""
     winner_place: int | None = None
-    """Final place of the winner, if the pairing decides it."""
+    """Final rank of the winner in the stage; None: this pairing does not decide it."""
     loser_place: int | None = None
-    """Best place of those who leave the stage in this round."""
+    """Best final rank of the teams that leave the stage in this round; None: the stage is no
+    knockout."""
     loser_goes_on: bool = False
-    """True: the loser has another match; teams leave here only if nobody wins."""
+    """True: the loser has another match. So teams leave the stage here only if nobody wins."""
     only_if_second_won: str = ""
-    """A pairing; this one is played only if the second place won there."""
+    """Id of another pairing: this one is played only if the second place wins that one. "":
+    always."""

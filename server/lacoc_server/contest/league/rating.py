@@ -8,13 +8,14 @@ import msgspec
 from whr import WHR
 
 _ELO = 400 / math.log(10)
-"""Elo of a natural unit."""
+"""Elo points of one natural unit, which is a factor e in the odds to win."""
 _SIDE = "left"
 _Z95 = 1.959963984540054
 _PRECISION = 1e-3
-"""Largest gradient at which the fit ends, in natural units."""
+"""The fit ends when the largest gradient is below this, in natural units."""
 _BATCH, _MOST_BATCHES = 50, 20
-"""Newton steps between two looks at the gradient, and most such batches."""
+"""How many Newton steps are made between two checks of the gradient, and how many such batches at
+most."""
 
 
 class Rated(NamedTuple):
@@ -33,17 +34,17 @@ class Rating(msgspec.Struct, frozen=True, kw_only=True):
     elo: float
     """The mean of all teams is 0."""
     interval_elo: float
-    """Half the width of the 95 % interval."""
+    """Half the width of the 95 % confidence interval, in Elo points."""
     games: int
 
 
 class Ratings(msgspec.Struct, frozen=True, kw_only=True):
-    """Ratings of all teams."""
+    """Ratings of all teams that have played."""
 
     teams: tuple[Rating, ...]
     """The strongest first."""
     side_elo: float
-    """What the left side is worth."""
+    """Advantage of the left seat, in Elo points."""
 
 
 def ratings(games: Iterable[Rated]) -> Ratings:
@@ -81,10 +82,10 @@ def ratings(games: Iterable[Rated]) -> Ratings:
 
 
 def _draws(games: Sequence[Rated]) -> dict[str, float]:
-    """Return arguments for the model: what to assume about draws if the games can't tell.
+    """Return arguments for the model, for contests in which no game or every game was drawn.
 
-    If no game was drawn, draws never happen. If all were, half of all games are draws. Otherwise
-    nothing is assumed: the games tell how often draws happen.
+    If no game was drawn, the model takes draws as impossible. If all were, it expects half of all
+    games to be drawn. Otherwise it fits how often draws happen.
     """
     if all(game.winner for game in games):
         return {"pinned_draw": 0.0}

@@ -34,25 +34,27 @@ class Coming(msgspec.Struct, frozen=True, kw_only=True):
     pairing: str
     game: int
     teams: tuple[str, str]
-    """Who will sit left and right."""
+    """The teams that will sit left and right."""
     court: str = ""
-    """Where it will probably be played; "": nobody knows, as in a published sheet."""
+    """Name of the court where it will probably be played; "": not known, as in a published
+    sheet."""
     at_ms: int = 0
-    """About when it will begin, in milliseconds since 1970, UTC; 0: nobody knows."""
+    """About when it will begin, in milliseconds since 1970, UTC; 0: not known."""
 
 
 class Later(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that can't be played yet: its teams or its draw are not known, or it has to wait."""
+    """A match that can't be played yet: its teams or its draw are not known, or it must wait."""
 
     pairing: str
     stage: str
     fixture: Phrase
-    """What it is: "Semi-final 1"."""
+    """Name of the match: "Semi-final 1"."""
     who: tuple[Phrase, Phrase]
-    """Who plays, as far as that is known: "winner of Quarter-final 2"."""
+    """The left and the right side, as far as they are known: a team, or "winner of Quarter-final
+    2"."""
     court: str = ""
     at_ms: int = 0
-    """Where and about when it will begin, as in `Coming`."""
+    """The probable court and time, as in `Coming`."""
 
 
 class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
@@ -64,7 +66,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """Whether teams can enter."""
     closes_ms: int
     """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them, or
-    nobody knows, as in a published sheet."""
+    not known, as in a published sheet."""
     teams: tuple[Team, ...]
     """In the order in which they entered."""
     stages: tuple[StageView, ...]
@@ -72,7 +74,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     titles: dict[str, Phrase]
     """What each stage is called, by its name in the contest file; also of those not drawn yet."""
     fixtures: dict[str, Phrase]
-    """What each match is in words, by its pairing: "Semi-final 1"."""
+    """Name of each match, by its pairing: "Semi-final 1"."""
     planned: tuple[Planned, ...]
     """The stages that are not drawn yet."""
     running: tuple[Called, ...]
@@ -82,12 +84,12 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     later: tuple[Later, ...]
     """All other matches that are still to come, in their order."""
     reasons: dict[str, tuple[Phrase, ...]]
-    """Why each team of a stage is in it, by stage and in the order of its seeding; stages that
-    follow none are left out."""
+    """Why each team of a stage is in it, by stage, in the order of the seeding. A stage without
+    such reasons is left out."""
     day: Day
     """Whether games are called now."""
     pause: Break | None
-    """The newest time in which no game is called: a pause or a break; None: there is none."""
+    """The newest pause or break, which may be over; None: there was none."""
     announced: Announced | None
     """The organiser's line to all; None: there is none."""
     decided: tuple[Decided, ...]
@@ -97,7 +99,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     side_elo: float
     """Advantage of the left side."""
     unused: tuple[Unused, ...]
-    """Facts that change nothing, and why."""
+    """Facts that have no effect, each with the reason."""
 
 
 def sheet_of(name: str, facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> ContestSheet:
@@ -125,9 +127,10 @@ def sheet(
     Args:
         name: the contest's name.
         contest: the contest.
-        expected: where and when open matches will probably begin, by pairing; it does not follow
-            from the facts, so a sheet that somebody can check does without it.
-        closes_ms: when entries close; likewise.
+        expected: where and when open matches will probably begin, by pairing. A published sheet has
+            none, because it must follow from the facts alone.
+        closes_ms: when entries close, in milliseconds since 1970, UTC; 0 in a published sheet, for
+            the same reason.
     """
     games = [game for view in contest.stages for match in view.matches for game in match.games]
     rated = ratings(Rated(*game.teams, game.winner) for game in games)

@@ -1,4 +1,4 @@
-"""Standings: where everybody stands after some matches, with ties broken by a list of codes."""
+"""Ranks teams by the results of matches; a list of codes breaks ties."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
@@ -15,24 +15,24 @@ WIN, DRAW = 2, 1
 
 
 class Counted(NamedTuple):
-    """A match that counts."""
+    """A match that counts for standings."""
 
     teams: tuple[str, ...]
-    """The team alone: it had a bye."""
+    """Both teams; a single team if it had a bye."""
     scores: tuple[int, ...]
-    """Points in the games, by team."""
+    """Points in all games of the match, by team."""
     winner: int | None
-    """Index of the winner; None: a draw."""
+    """Index of the winner in `teams`; None: a draw."""
     played: bool = True
     """False: a bye or a walkover."""
 
 
 class Standing(msgspec.Struct, frozen=True, kw_only=True):
-    """Where a team stands."""
+    """The row of one team in a table."""
 
     team: str
     rank: int
-    """From 1. Teams that all codes left equal share a rank, and the next ones are left out; so do
+    """The team's rank, from 1. Tied teams share a rank, and the next ranks are left out; so do
     teams that went out of a knockout in the same round."""
     won: int = 0
     drawn: int = 0
@@ -46,13 +46,13 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""
-    """The code that put the team below the one above it; "seed": all codes left them equal, and the
-    order of the draw decided only who is listed first. In a bracket what decided the level match of
-    these two. "": it is the first of its table, or no code was asked."""
+    """The code that ranks the team below the one above it. "seed": all codes left them equal, and
+    the seeding says only who is listed first. In a knockout: how the level match of these two was
+    decided. "": there is no team above, or no code compared them."""
     shares: bool = False
-    """True: all codes left it equal to another team, and they share their rank."""
+    """True: it shares its rank with another team, because all codes left them equal."""
     out: bool = False
-    """True: disqualified."""
+    """True: the team is disqualified, so it is ranked last."""
 
 
 class Table(msgspec.Struct, frozen=True, kw_only=True):
@@ -60,13 +60,13 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
 
     section: str
     tie_breaks: tuple[str, ...]
-    """Codes in the order in which they are asked."""
+    """Codes in the order in which they rank."""
     rows: tuple[Standing, ...]
     """The best first."""
 
 
 class _Tally:
-    """What follows for each team from the matches: points and other numbers."""
+    """Numbers of each team, counted from the matches: points, matches won, and so on."""
 
     def __init__(self, teams: Sequence[str], matches: Iterable[Counted]) -> None:
         self.seed = {team: place for place, team in enumerate(teams)}
@@ -104,12 +104,12 @@ class _Tally:
         ]
 
     def sonneborn(self, team: str) -> int:
-        """Add up the points of opponents: twice if the team beat them, once if it drew."""
+        """Sum up the opponents' points: doubled if the team beat the opponent, once if it drew."""
         pairs = zip(self.opponents(team), self.matches[team], strict=True)
         return sum(strength * points for strength, (_, points, _) in pairs)
 
     def direct(self, team: str, tied: Collection[str]) -> int:
-        """Return a team's points against tied teams; 0 unless all tied teams have met."""
+        """Return a team's points in matches against tied teams; 0 if some of them have not met."""
         for one in tied:
             if not {other for other, _, _ in self.matches[one]} >= {*tied} - {one}:
                 return 0
@@ -193,7 +193,7 @@ def standings(
 
 
 def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -> str:
-    """Return the code that ranks one team below another one; "": there is no other one."""
+    """Return the first code with different values for two teams; "": no code tells them apart."""
     values = zip(codes, above, below, strict=False)
     return next((code for code, one, other in values if one != other), "")
 
@@ -201,7 +201,7 @@ def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -
 def _split(
     group: Sequence[str], code: str, tally: _Tally, values: dict[str, list[int]]
 ) -> list[list[str]]:
-    """Split teams that are equal so far by one more code, and note its values."""
+    """Split teams that are equal so far by one more code; add each team's value to `values`."""
     value = {team: TIE_BREAKS[code](tally, team, group) for team in group}
     for team in group:
         values[team].append(value[team])

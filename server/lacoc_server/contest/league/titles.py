@@ -1,4 +1,4 @@
-"""What people call the stages of a contest: the organiser's titles, or the usual names; pure."""
+"""Names of the stages for people: the organiser's titles, or the usual names; pure."""
 
 from collections.abc import Callable, Collection
 
@@ -18,8 +18,8 @@ _USUAL: dict[str, Callable[[int | None], Phrase]] = {
 def titles(contest: Contest) -> dict[str, Phrase]:
     """Return what people call each stage, by its name in the contest file.
 
-    Without a title of the organiser it is the usual name of the format; stages of one usual name
-    have numbers.
+    A stage without a title of the organiser has the usual name of its format, with a number if
+    several stages have that name.
     """
     there = (*(view.plan for view in contest.stages), *contest.planned)
     plans = {plan.stage: plan for plan in there}  # one to come can be among the stages already
@@ -27,7 +27,7 @@ def titles(contest: Contest) -> dict[str, Phrase]:
 
 
 def title(contest: Contest, stage: str) -> Phrase:
-    """Return what people call a stage; its name, if there is none of this name now."""
+    """Return what people call a stage; if the contest has no such stage now, its own name."""
     return titles(contest).get(stage) or say("stage.titled", en=stage, ja=stage)
 
 

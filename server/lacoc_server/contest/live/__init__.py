@@ -1,1 +1,1 @@
-"""A contest at its courts: the office, and the processes that it keeps running."""
+"""A contest at its courts: the office, and the processes of courts, pages and bots."""

@@ -28,19 +28,19 @@ from lacoc_shared.words import Phrase, say
 T = TypeVar("T")
 
 _GONE_S = 10.0
-"""A court that was not heard for this long goes on here. Before, its own machine may start it
-again."""
+"""If a court was not heard for this long, it goes on here [s]. Its own machine may restart it
+sooner."""
 _CONNECT_S = 0.2
-"""Time between two attempts to connect."""
+"""Time between two attempts to connect [s]."""
 _AGAIN_S = 2.0
-"""Time between two attempts to open a court here, or to end one elsewhere."""
+"""Time between two attempts to open a court here, or to end it on the other machine [s]."""
 
 
 class RetryPause:
-    """The time between two attempts to do something.
+    """A timer that says when the next attempt to do something is due.
 
     Args:
-        length_s: how long it is.
+        length_s: shortest time between two attempts [s].
     """
 
     def __init__(self, length_s: float) -> None:
@@ -48,7 +48,7 @@ class RetryPause:
         self._next_s = 0.0
 
     def over(self) -> bool:
-        """Return whether it is time for the next attempt; if so, begin the next pause."""
+        """Return whether the next attempt is due; if so, begin the pause after it."""
         now_s = time.monotonic()
         if now_s < self._next_s:
             return False
@@ -57,11 +57,11 @@ class RetryPause:
 
 
 class Attempts(Generic[T]):
-    """Something that is tried on another thread, again and again until there is a result.
+    """Calls a function on another thread, again and again until it returns a result.
 
     Args:
         do: returns the result, or None if it has to be tried again.
-        pause_s: time between the beginnings of two attempts.
+        pause_s: time between the beginnings of two attempts [s].
         aside: runs `do`.
     """
 
@@ -92,7 +92,7 @@ class AwayCourt:
         link_to: makes the office's connection to a court, from a session and the court's name.
         open_here: returns a context manager that runs the court on this machine, and gives its
             address.
-        tell: told what becomes of the court.
+        tell: called with a phrase for people: the court goes on here, or can't be opened here.
     """
 
     def __init__(
@@ -131,15 +131,16 @@ class AwayCourt:
 
     @property
     def is_copied(self) -> bool:
-        """Whether nothing of this court's records is missing here, as far as is known."""
+        """Whether this machine has all records of the court, as far as the office knows."""
         return self._is_here or self._copy.is_whole
 
     def step(self, office: Office, *, closing: bool = False) -> None:
-        """Look at the court once, and do what follows; never waits.
+        """Look at the court once: copy its record, or open it here if it is gone. This never waits.
 
         Args:
             office: the office.
-            closing: whether the contest is over, so that the court shall close its last match.
+            closing: whether the contest is over, and the court must close its last match so that it
+                can be copied.
 
         Raises:
             UserError: if a part of a record can't be written.
@@ -163,7 +164,10 @@ class AwayCourt:
             self._tell(say("away.goes-on-here", court=self.name, at=self._entry.elsewhere))
 
     def _connect(self, office: Office) -> None:
-        """Connect to the other machine, again and again until it answers."""
+        """Try again and again to connect to the court's own machine.
+
+        Use the connection once it is there.
+        """
         link = self._connects.take()
         if link is None:
             return
@@ -186,7 +190,10 @@ class AwayCourt:
         return self._link_to(session, self.name)
 
     def _look(self, link: CourtLink, closing: bool) -> None:
-        """Have the record of the court's match copied."""
+        """Have the record of the court's newest match copied.
+
+        If `closing`, have that match closed.
+        """
         sheet = link.sheet
         if sheet is None or not sheet.call:
             return
@@ -205,7 +212,10 @@ class AwayCourt:
         office.connect(self.name, link, venue.told_address(self._where.contest, self.name, address))
 
     def _open(self) -> tuple[str, CourtLink] | None:
-        """Return the address of the court on this machine, and a connection; None: it can't be."""
+        """Open the court on this machine.
+
+        Return its address and a connection, or None if it fails.
+        """
         try:
             with ExitStack() as stack:
                 address = stack.enter_context(self._open_here(self.name))
@@ -217,7 +227,7 @@ class AwayCourt:
         return address, self._link_to(session, self.name)
 
     def _end_elsewhere(self) -> None:
-        """End the court on the other machine, if it comes back."""
+        """If the court on the other machine comes back, tell it to end: the court is here now."""
         if self._there is None:
             return
         self._there.poll()

@@ -1,7 +1,8 @@
-"""The office's connection to one court: it assigns matches, and hears what becomes of them.
+"""The office's connection to one court: assigns matches, and reads their states and results.
 
-Nothing here waits. What a court says is asked for whenever its health names something newer, so a
-lost message, a restart of the court or of the office costs half a second, and no fact is lost.
+Nothing here waits. A court's health says how new its sheet and its events are; if they are newer
+than the copies here, this asks for them. So a lost message, or a restart of court or office, costs
+half a second, and no result is lost.
 """
 
 import time
@@ -33,26 +34,29 @@ from lacoc_shared.words import Phrase
 T = TypeVar("T")
 
 ANSWER_S = 5.0
-"""Longest wait for an answer to an assignment: a court weighs the files in first."""
+"""Longest wait for the answer to a request [s]: before it answers, a court weighs the files in."""
 GONE_S = 2.0
-"""A court that has sent no health for this long does not count as there."""
+"""A court that has sent no health message for this long counts as away [s]."""
 _FETCH_S = 2.0
 _MAX_BYTES = 1 << 20  # of a sheet, of the list of events, or of a part of a record
 
 
 class Unanswered(Enum):
-    """No readable answer came; the court may have done what was asked. Ask again, same call."""
+    """The court sent no readable answer.
+
+    It may have done what was asked, so ask again with the same call.
+    """
 
     NO_ANSWER = "no-answer"
 
 
 class Asked(Generic[T]):
-    """A request to a court that is under way.
+    """A request that was sent to a court, and its answer.
 
     Args:
         question: the request.
         kind: the kind of message that the court answers.
-        refused: called with a refusal.
+        refused: called if the court refuses the request, with the refusal.
     """
 
     def __init__(
@@ -92,18 +96,18 @@ class CourtResult(NamedTuple):
 
     call: str
     match_id: str
-    """Names the record."""
+    """Id of the match; its record has the same name."""
     teams: tuple[str, ...]
     scores: tuple[int, ...]
     """Points by seat, with the referee's adjustments; zeros if play never ended."""
     outcome: str
-    """Id of the official winner's seat, "draw" or "void"."""
+    """Id of the seat that won officially, or "draw" or "void"."""
     advice: tuple[Phrase, ...] = ()
     """Why the court advised to play the match again; empty: it did not."""
 
 
 class CourtLink:
-    """Everything between the office and one court; one thread uses it.
+    """The connection between the office and one court; only one thread may use it.
 
     Args:
         session: an open client session at the court's address.
@@ -146,7 +150,7 @@ class CourtLink:
 
         Args:
             call: id of the call. The same call twice opens one match.
-            fixture: what is played, a phrase of `fixture.*`.
+            fixture: name of the match and game, a phrase of `fixture.*`.
             seats: a team for each seat of the court.
             arena: name of an installed arena; "": the court's own.
             arena_settings: entries that replace those of the arena file.
@@ -165,12 +169,12 @@ class CourtLink:
         return self._ask("assign", request, Done)
 
     def withdraw(self, call: str, *, begun: bool = False, official: bool = False) -> Asked[Done]:
-        """Have an assigned match closed.
+        """Tell the court to close an assigned match.
 
         Args:
             call: id of its call.
-            begun: whether to close it also if it has begun; else that is refused.
-            official: whether to close it also if its result is official; else this is refused.
+            begun: True: close it even if it has begun; False: the court refuses this.
+            official: True: close it even if its result is official; False: the court refuses this.
         """
         request = Withdraw(
             token=self._token,
@@ -186,7 +190,7 @@ class CourtLink:
 
         Args:
             match_id: the match.
-            have: bytes that are here already, by the file's name.
+            have: length in bytes of each file of the record that is here, by its name.
         """
         request = Copy(
             token=self._token, generation=self._generation, match_id=match_id, have=dict(have)
@@ -194,7 +198,7 @@ class CourtLink:
         return self._ask("copy", request, Copied)
 
     def retire(self) -> Asked[Done]:
-        """Have the court's process end, because the court goes on elsewhere."""
+        """Tell the court's process to end, because the court goes on at another machine."""
         request = Retire(token=self._token, generation=self._generation)
         return self._ask("retire", request, Done)
 
@@ -202,13 +206,16 @@ class CourtLink:
         """Tell the court where all teams are.
 
         Args:
-            teams: by the salted hash of the team's token.
+            teams: where each team is, by the salted hash of the team's token.
         """
         request = Tell(token=self._token, generation=self._generation, teams=dict(teams))
         return self._ask("tell", request, Done)
 
     def poll(self) -> None:
-        """Take in what arrived."""
+        """Read the messages and answers that have arrived.
+
+        Ask for a newer sheet or newer events.
+        """
         frame = _newest(self._frames, Frame)
         self.frame = frame or self.frame
         health = _newest(self._healths, Health)
@@ -232,14 +239,14 @@ class CourtLink:
 
     @property
     def sheet(self) -> Sheet | None:
-        """The court's sheet; None while the court is away or a newer sheet is under way."""
+        """The court's newest sheet; None while the court is away, or a newer one is to come."""
         if self.health is None or not self.is_there or self.health.sheet != self._sheet.hash:
             return None
         return self._sheet.value
 
     @property
     def call(self) -> str | None:
-        """The call that the court has; "": it waits for one; None: not known now."""
+        """Id of the call whose match the court has; "": it has no match; None: not known now."""
         sheet = self.sheet
         return None if sheet is None else sheet.call
 
@@ -253,7 +260,7 @@ class CourtLink:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Teams that nobody plays for now, in a match that has not begun."""
+        """Teams whose seats are empty or silent, in a match that has not begun."""
         if self.phase not in (Phase.LOBBY, Phase.READY):
             return ()
         assert self.frame is not None
@@ -267,21 +274,21 @@ class CourtLink:
 
     @property
     def clock_s(self) -> float | None:
-        """Used time of the match that `sheet` describes [s]; None: not known now."""
+        """Time played in the match that `sheet` describes [s]; None: not known now."""
         if self.phase is None or self.frame is None:
             return None
         return self.frame.clock_ticks * BEAT_S
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """The newest events of the match that `sheet` describes; empty while not known."""
+        """The newest events of the match that `sheet` describes; empty while they are not known."""
         if self.sheet is None or not self._has_events:
             return ()
         return self._events.value or ()
 
     @property
     def result(self) -> CourtResult | None:
-        """The result of the call that the court has; None while it has none."""
+        """The official result of the court's match; None: there is none, or it is not known."""
         sheet = self.sheet
         if sheet is None or not sheet.call:
             return None
@@ -289,9 +296,9 @@ class CourtLink:
 
     @property
     def _has_events(self) -> bool:
-        """Whether the newest event that the court's health names has arrived here.
+        """Whether the newest event that the court's health mentions has arrived here.
 
-        True also if the health names none.
+        Also true if the court has no events.
         """
         health, events = self.health, self._events.value or ()
         if health is None or health.events == 0:
@@ -334,7 +341,7 @@ def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:
 
 
 class _Fetched(Generic[T]):
-    """Something that a court is asked for: the newest answer, and its hash."""
+    """Keeps the newest answer of a court to one kind of question, with the answer's hash."""
 
     def __init__(self, session: Session, key: str, kind: type[T]) -> None:
         self._session = session
@@ -345,16 +352,16 @@ class _Fetched(Generic[T]):
         self.hash = b""
 
     def ask(self) -> None:
-        """Ask the court, unless an answer is under way."""
+        """Send the question, unless an answer to it is still awaited."""
         if self._question is None:
             self._question = self._session.question(self._key, timeout_s=_FETCH_S)
 
     def forget(self) -> None:
-        """Forget the newest answer, and any that is under way."""
+        """Drop the newest answer, and any that is still awaited."""
         self._question, self.value, self.hash = None, None, b""
 
     def take(self) -> bool:
-        """Take in an answer; return whether there was a new one."""
+        """Read an answer if one has come; return whether it has."""
         try:
             answer = None if self._question is None else self._question.take()
             if answer is None:
@@ -371,7 +378,7 @@ class _Fetched(Generic[T]):
 
 
 def _newest(mailbox: Mailbox, kind: type[T]) -> T | None:
-    """Return the message in a mailbox; None if there is none, or none of this version."""
+    """Return the newest message in a mailbox; None: there is none, or it can't be decoded."""
     mail = mailbox.take()
     try:
         return None if mail is None else codec.decode(mail.payload, kind, _MAX_BYTES)

@@ -1,7 +1,7 @@
-"""The office of a contest: it gives courts their games, and takes in what becomes of them.
+"""The office of a contest: it gives courts their games, and takes in the results.
 
-All that it knows is in the facts and at the courts. So it can be killed at any moment: started
-again, it reads the facts, asks the courts what they have, and goes on.
+It keeps no state of its own: everything is in the facts and at the courts. So it can be killed at
+any moment: started again, it reads the facts, asks the courts what they have, and goes on.
 """
 
 import time
@@ -112,7 +112,7 @@ class Office:
 
     @property
     def is_superseded(self) -> bool:
-        """Whether a court has heard a later office of this contest."""
+        """Whether the office went on at another machine, and a court has told so."""
         return any(link.is_superseded for link in self._links.values() if link is not None)
 
     def connect(self, court: str, link: CourtLink, address: str) -> None:
@@ -127,11 +127,13 @@ class Office:
         self._addresses[court] = address
 
     def expect(self, court: str) -> None:
-        """Count a court as heard now: it is being opened, and goes on with its game."""
+        """Treat a court as heard now, because it is being opened: so its game is not taken back."""
         self._heard_ms[court] = _now_ms()
 
     def step(self) -> None:
-        """Look at the courts once; then note results, draw, take games back and call others.
+        """Read the courts once.
+
+        Then append results and draws, take games back and call the next ones.
 
         Raises:
             UserError: if the facts can't be read or written, or a frozen file has changed.
@@ -156,7 +158,7 @@ class Office:
         self.known = OfficeKnowledge(seen, self._teller.pace, dict(self.held))
 
     def _may_draw(self, now_ms: int) -> bool:
-        """Return whether teams have had their time to enter, and there are enough of them."""
+        """Return whether the office may draw: entries are closed, or it is time to close them."""
         if self.contest.closed:
             return True
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
@@ -180,9 +182,9 @@ class Office:
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.
 
-        First `follows` is asked about the contest known here. If it returns any facts, it is asked
-        again about the contest that follows from all facts, also those of other programs. Only the
-        facts that it returns then are appended.
+        `follows` is called twice: first with the contest known here. If it then returns facts, it
+        is called with the newest contest, which includes facts of other programs. Only the facts of
+        the second call are appended.
         """
         if [*follows(self.contest)]:
             self._store.decide(lambda facts: follows(self._newest.of(facts)))
@@ -193,7 +195,10 @@ class Office:
         return self._newest.of(self._facts)
 
     def _answers(self) -> list[AnyFact]:
-        """Take the courts' answers; return a fact for each game that a court refused for good."""
+        """Read the courts' answers.
+
+        Return facts that take back the games that a court refused for good.
+        """
         running = {call.id: call for call in self.contest.running}
         back: list[AnyFact] = []
         for call_id, asked in [*self._asked.items()]:
@@ -238,7 +243,7 @@ class Office:
         )
 
     def _take_back(self, now_ms: int) -> None:
-        """Withdraw matches that courts have, but should not have any more, also those in play."""
+        """Withdraw matches from courts that should not have them any more, also matches in play."""
         running = {call.id for call in self.contest.running}
         for link in filter(None, self._links.values()):
             call = link.call
@@ -258,7 +263,7 @@ class Office:
                 self._open_matches.look(link, now_ms)
 
     def _may_ask(self, call: str, now_ms: int) -> bool:
-        """Return whether a court can be asked about a call: at most once a second."""
+        """Return whether a court may be asked about a call again: at most once a second."""
         if call in self._asked or now_ms - self._asked_ms.get(call, 0) < _AGAIN_MS:
             return False
         self._asked_ms[call] = now_ms
@@ -266,7 +271,7 @@ class Office:
 
 
 def _draws(contest: Contest) -> list[AnyFact]:
-    """Return the next draw, if the office makes it by itself."""
+    """Return the fact of the next draw if it does not wait for the organiser; else nothing."""
     draw = None if waits_for_organiser(contest, FORMATS) else due(contest, FORMATS)
     return [] if draw is None else [draw]
 

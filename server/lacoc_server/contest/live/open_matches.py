@@ -1,6 +1,6 @@
-"""Open matches: friendly ones at courts that have no game, without a fact.
+"""Open matches: friendly matches at courts that have no game; no fact is appended for them.
 
-All that is known of them is at the courts. So an office that was started again goes on with them.
+Their state is only at the courts. So an office that was started again goes on with them.
 """
 
 import secrets
@@ -16,7 +16,7 @@ from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
 _SHOWN_MS = 10_000
-"""The result of a match stays for so long before an open match follows it."""
+"""A result is shown for this long before the next open match follows it [ms]."""
 _AGAIN_MS = 1000
 _OVER = (Phase.OFFICIAL, Phase.VOID)
 
@@ -27,7 +27,7 @@ class OpenMatches:
     Args:
         stage: the stage of open matches.
         token_of: returns the token of a court's open seat.
-        tell: told why a court refuses its open match.
+        tell: called with a phrase if a court refuses its open match.
     """
 
     def __init__(
@@ -48,7 +48,9 @@ class OpenMatches:
         self._refused: dict[str, Phrase] = {}
 
     def look(self, link: CourtLink, now_ms: int) -> None:
-        """Look at a court that has no game: give it an open match if it has none.
+        """Look at a court that has no game of the contest.
+
+        Give it the next open match if it is free.
 
         Args:
             link: the connection to the court.
@@ -79,7 +81,7 @@ class OpenMatches:
     def whereabouts(
         self, seen: Mapping[str, SeenCourt], addresses: Mapping[str, str]
     ) -> Iterator[tuple[str, Whereabouts]]:
-        """Yield for each open seat its token, and where it is or that it waits.
+        """Yield for each open seat its token, and either its open match or that it waits for one.
 
         Args:
             seen: the courts.
@@ -122,7 +124,7 @@ class OpenMatches:
         return True
 
     def _is_free(self, link: CourtLink, call: str, now_ms: int) -> bool:
-        """Return whether a court waits, or has shown a result for long enough."""
+        """Return whether a court has no match, or has shown a result for long enough."""
         if not call:
             return True
         if link.phase not in _OVER:
@@ -136,5 +138,5 @@ class OpenMatches:
 
 
 def new_call() -> str:
-    """Make the id of an open match's call."""
+    """Make an id for the call of an open match."""
     return f"{OPEN_CALL}{secrets.token_hex(8)}"

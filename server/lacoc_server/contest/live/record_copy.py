@@ -10,7 +10,7 @@ from lacoc_shared.record import files
 from lacoc_shared.record.matches import MatchName
 
 _AGAIN_S = 0.1
-"""Time between two questions for more of a record that is still written."""
+"""Time between two requests for more of a record [s]."""
 
 
 class RecordCopy:
@@ -32,11 +32,11 @@ class RecordCopy:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing that this object was told to copy is missing."""
+        """Whether all matches given to `want` are copied completely."""
         return not self._wanted
 
     def want(self, match_id: str) -> None:
-        """Copy a match, unless its whole record is here."""
+        """Begin to copy the record of a match of this court, unless the whole record is here."""
         name = MatchName.parse(match_id)
         if name is None or name.court != self._court or match_id in self._wanted:
             return
@@ -44,7 +44,7 @@ class RecordCopy:
             self._wanted.append(match_id)
 
     def step(self, link: CourtLink) -> None:
-        """Take in the part that has come, and ask for the next one.
+        """Write the part that has arrived, and ask for the next one.
 
         Raises:
             UserError: if a part can't be written.

@@ -1,4 +1,4 @@
-"""A contest at its courts, with people and bots."""
+"""Runs a contest at its courts, with people and bots: opens everything, and steps the office."""
 
 import math
 import time
@@ -37,24 +37,23 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 _PAGES = ""
-"""Stands for the pages beside the names of the courts; no court has this name."""
+"""Stands for the pages where names of courts are keys; no court has this name."""
 _STEP_S = 0.05
-"""Time between two looks at the courts."""
+"""Time between two looks at the courts [s]."""
 _FAREWELL_S = 5.0
-"""The courts stay for so long after the end, so that all teams hear that the contest is over."""
+"""After the end the courts stay open for this long, so that all teams hear of it [s]."""
 _LATE_S = 30.0
-"""With several courts at real time they stay for so long: pages that follow the director show the
-end 20 s later, and then the result.
-"""
+"""The same with several courts at real time [s]: pages that follow the director show the end 20 s
+later, and then the result."""
 _COPY_S = 60.0
-"""Longest further wait for the newest records of courts on other machines."""
+"""After that, longest wait for the newest records of courts on other machines [s]."""
 _SHOWN_S = 60.0
-"""The last match is shown for so long on a court of another machine. Then the court closes it, so
+"""A court on another machine shows the last match for this long [s]. Then the court closes it, so
 that its record can be copied whole."""
 
 
 class Opened(NamedTuple):
-    """Where the parts of an opened contest can be reached."""
+    """Addresses, links and the code of a contest that was opened."""
 
     url: str
     """Address of the pages."""
@@ -89,9 +88,9 @@ def play_live(
     Args:
         file: the contest file.
         opened: called when courts and pages are there.
-        progress: told about each change.
-        tell: told what somebody must know: a court that can't be opened, or that went on here.
-        news: told each thing that happens: a game that is called, a result, a court that is lost.
+        progress: called with the numbers of decided and of all matches, after each change.
+        tell: called with what the organiser must know: a court can't be opened, or goes on here.
+        news: called with a line for each thing that happens: a called game, a result, a lost court.
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
@@ -222,18 +221,18 @@ def play_live(
 def _run_here(
     where: ContestFolder, logs: Path, speed: float, tell: Callable[[Phrase], None], name: str
 ) -> AbstractContextManager[str]:
-    """Return a context manager that runs a court on this machine, and gives its address."""
+    """Return a context manager that runs a court on this machine, and yields its address."""
     return venue.court(where, name, logs / name, speed, tell, here=True)
 
 
 def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) -> dict[str, str]:
-    """Open courts and pages, all at the same time, until the stack is closed.
+    """Open courts and pages, all at the same time; the stack closes them.
 
     Returns:
         Their addresses, by name.
 
     Raises:
-        UserError: if one can't be opened.
+        UserError: if a court or the pages can't be opened.
     """
 
     def open_one(part: AbstractContextManager[str]) -> tuple[ExitStack, str]:

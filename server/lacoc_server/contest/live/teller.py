@@ -26,16 +26,17 @@ from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import say
 
 _LOOK_MS = 1000
-"""Time between two estimates, when nothing else has changed."""
+"""Time between two estimates if nothing else has changed [ms]."""
 _AGAIN_MS = 3000
-"""A court is told again after this time, because it may have been restarted."""
+"""A court is told again after this time even without a change, because it may have restarted
+[ms]."""
 _BETWEEN_MS = 60_000
-"""Estimated time from the call of a game to its beginning, until one has ended."""
+"""Guess for the time from the call of a game to the start of play, until a game has ended [ms]."""
 _SALT_BYTES = 16
 
 
 class Teller:
-    """Keeps all courts informed; never waits for one.
+    """Sends all courts the whereabouts of all teams; never waits for an answer.
 
     Args:
         links: the courts by name; None: a court that is not connected.
@@ -83,7 +84,7 @@ class Teller:
     def tell(
         self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, SeenCourt], now_ms: int
     ) -> None:
-        """Tell the courts what has changed.
+        """Find out where each team plays or waits, and send this to the courts that need it.
 
         Args:
             contest: the contest.

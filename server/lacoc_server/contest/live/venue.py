@@ -20,7 +20,7 @@ _END_S = 5.0
 _ADDRESS_S = 20.0
 _LOOK_S = 0.5
 _AGAIN_S = 5.0
-"""Shortest time between two starts of a bot."""
+"""Shortest time between two starts of one bot [s]."""
 
 
 @contextmanager
@@ -33,11 +33,11 @@ def court(
     *,
     here: bool,
 ) -> Iterator[str]:
-    """Run a court of the contest until the block ends; give its address.
+    """Run a court of the contest until the block ends; yield its address.
 
-    A court that ends is started again: it goes on with its match. If it can't be opened, it is
-    tried again for some seconds: if an office was killed, its courts may hold their addresses for
-    some seconds more.
+    If its process ends, it is started again, and goes on with its match. If it can't be opened, it
+    is tried again for some seconds: the courts of a killed office may still use their addresses for
+    some seconds.
 
     Args:
         where: the contest.
@@ -45,8 +45,8 @@ def court(
         folder: folder for what the process prints; it is made.
         speed: 2 plays twice as fast as real time.
         tell: told why the court can't be opened yet, at the first try.
-        here: True on the office's machine; False: on the machine that the contest file names for
-            the court, if it names one.
+        here: True: the court runs on the office's machine. False: it runs on the machine that the
+            contest file names for it, if any.
 
     Raises:
         UserError: if the court can't be opened.
@@ -82,7 +82,7 @@ def court(
 def pages(
     where: ContestFolder, folder: Path, listen: str | None, show: bool, desk: str
 ) -> Iterator[str]:
-    """Serve the pages of a contest until the block ends; give their address.
+    """Serve the pages of a contest until the block ends; yield their address.
 
     Args:
         where: the contest.
@@ -104,7 +104,7 @@ def pages(
 
 
 def told_address(contest: ContestFile, name: str, opened: str) -> str:
-    """Return the address for contestants of a court on this machine; they may be on others.
+    """Return the address at which contestants on other machines reach a court of this machine.
 
     Args:
         contest: the contest.
@@ -121,7 +121,7 @@ def told_address(contest: ContestFile, name: str, opened: str) -> str:
 
 
 def _check_free(contest: ContestFile, name: str, listen: Sequence[str]) -> None:
-    """Check that a court can listen at its addresses, without the time that a process takes.
+    """Check that a court can listen at its addresses, before a process is started for it.
 
     Raises:
         UserError: if it can't; the message names the court, the port and what to do.
@@ -133,9 +133,9 @@ def _check_free(contest: ContestFile, name: str, listen: Sequence[str]) -> None:
 
 
 def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], list[str]]:
-    """Return a function that gives the words of a court's later starts.
+    """Return a function that makes the command words with which a court is started again.
 
-    If the court took a free port at its first start, it has the same port later.
+    If the court took a free port at its first start, these words name the same port.
     """
     place, _, port = listen.rpartition(":")
 
@@ -148,7 +148,7 @@ def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], l
 
 
 class Bots:
-    """Plays for the teams that are bots: a process for each team, which goes from court to court.
+    """Runs the bots of teams: a process for each team, which plays at one court after the other.
 
     Used as a context manager; all processes end with it.
 
@@ -175,7 +175,8 @@ class Bots:
     def follow(self, contest: Contest) -> None:
         """Start the bots of teams that are called for the first time.
 
-        A bot that ended too early is started again. A bot is ended if its team has other files now.
+        If the process of a called team's bot has ended, start it again. If a team has new files,
+        end its bot.
         """
         bots = {team.name: team for team in contest.teams if team.bot}
         files = {(team.name, team.files) for team in bots.values()}

@@ -1,1 +1,1 @@
-"""A second machine for a contest's office: it copies all that is kept, and can go on."""
+"""A second machine for a contest's office: it copies what the office keeps, and can take over."""

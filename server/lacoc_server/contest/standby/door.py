@@ -1,4 +1,4 @@
-"""The office's door for the second machine: it may read all that is kept, sealed."""
+"""Answers the second machine, which may read all that the office keeps; messages are sealed."""
 
 import hashlib
 import threading
@@ -35,11 +35,11 @@ from lacoc_shared.record.matches import MatchName
 from lacoc_shared.words import Phrase, say
 
 _FACTS_BYTES = 1 << 18
-"""How long the facts of one answer may be."""
+"""Most characters that the facts in one answer may have together."""
 ASK_MAX_BYTES = 65_536
-"""Longest sealed request that is read."""
+"""Longest sealed request that is read [bytes]."""
 _SILENT_S = 10.0
-"""A second machine that has not asked for this long is told as silent."""
+"""The organiser is told if the second machine has not asked for this long [s]."""
 
 
 class StandbyDoor:
@@ -47,7 +47,7 @@ class StandbyDoor:
 
     Args:
         where: the contest.
-        tenure: ends if a later office asks.
+        tenure: this machine's time as the office; it ends if a later office asks.
         applications: the entries that wait.
         sealing: decrypts requests and encrypts answers.
 
@@ -76,7 +76,7 @@ class StandbyDoor:
         self._store.__exit__()
 
     def judge(self, payload: bytes) -> bytes | Refusal:
-        """Answer a sealed request; whoever does not have the token is refused."""
+        """Answer a sealed request; refuse one that was not sealed with the token."""
         if len(payload) > ASK_MAX_BYTES:
             return Refusal(say("standby.not-proven"))
         try:
@@ -87,7 +87,7 @@ class StandbyDoor:
         return self._sealing.seal(encode(self.answer(request)), payload)
 
     def answer(self, asked: AnyAsk) -> AnyAnswer:
-        """Answer a request that was sealed with the token."""
+        """Answer a request that was opened with the right token."""
         try:
             self._tenure.hear(asked.generation)
             with self._one:
@@ -103,7 +103,7 @@ class StandbyDoor:
         return OfficeThere(generation=self._tenure.generation)
 
     def news(self) -> Iterator[Phrase]:
-        """Yield what the organiser must know: a second machine copies, or has become silent."""
+        """Yield news for the organiser: a second machine has begun to copy, or is silent."""
         if self._asked_s is None:
             return
         is_silent = time.monotonic() - self._asked_s > _SILENT_S
@@ -176,19 +176,19 @@ def small_files(where: ContestFolder) -> dict[str, Path]:
 
 
 def hashes(paths: Mapping[str, Path]) -> dict[str, str]:
-    """Return the hashes of files by name, without those that are not there."""
+    """Return the hashes of files, by name; files that do not exist are left out."""
     contents = {name: _read(path) for name, path in paths.items()}
     return {name: hash_of(data) for name, data in contents.items() if data is not None}
 
 
 def version_of(waiting: Mapping[str, Application]) -> str:
-    """Return a text that differs as soon as the list of applications does."""
+    """Return a hash of the list of applications, which changes whenever the list does."""
     listed = sorted((name, one.at_ms) for name, one in waiting.items())
     return hashlib.blake2b(encode(listed), digest_size=16).hexdigest()
 
 
 def with_segments(records: Path) -> tuple[str, ...]:
-    """Return the ids of the matches that have segments, and no packed record yet.
+    """Return the ids of the matches whose records are still segments, and are not packed yet.
 
     Args:
         records: folder of the records.
@@ -199,7 +199,7 @@ def with_segments(records: Path) -> tuple[str, ...]:
 
 
 def _read(path: Path) -> bytes | None:
-    """Read a small file; None if there is none.
+    """Read a small file; None if it does not exist.
 
     Raises:
         UserError: if it can't be read.

@@ -1,8 +1,9 @@
-"""The copy of an office's folder, kept in step.
+"""Keeps a copy of an office's folder equal to the original.
 
-A step asks what the office has, and copies what is missing: first what facts can name (entries,
-secrets, records), then the facts themselves. The facts of a step were read before its records. So
-whenever copying stops, every record of a result that is here was copied up to its end at least.
+A step asks what the office has, and copies what is missing: first entries, secrets and records,
+which facts can name, then the facts themselves. The facts of a step were read before its records.
+So if copying stops at any moment, the copy has the record of each of its results, at least up to
+the end of the match.
 """
 
 import os
@@ -37,39 +38,40 @@ from lacoc_shared.words import Phrase, say
 
 _ENTRY_MAX_BYTES = 1 << 26
 _TRIES = 5
-"""How often a step is done again at once if something has changed meanwhile."""
+"""How often a step is repeated at once if the office's files changed during it."""
 
 
 class _Changed(Exception):
-    """Something has changed at the office while it was copied: the step is done again."""
+    """Something at the office changed while it was copied, so the step must be repeated."""
 
 
 class CopyingEnded(Exception):
-    """The office goes on here, or this folder is no copy any more: nothing is copied."""
+    """This machine takes over as the office, so no more may be copied into its folder."""
 
 
 class CopyState(NamedTuple):
-    """How far a copy is."""
+    """How much of the office's folder the copy has."""
 
     at_ms: int
-    """When all of it was as it was at the office, in milliseconds since 1970, UTC; 0: never."""
+    """The last time at which the copy was equal to the office's folder, in milliseconds since 1970,
+    UTC; 0: never yet."""
     facts: int
     records: int
-    """Whole records."""
+    """How many records of results are here completely."""
     open: int
-    """Records that are still written."""
+    """How many records are not complete here yet."""
 
 
 class Follower:
-    """Keeps a folder in step with the office of another machine; used as a context manager.
+    """Copies the office's folder of another machine into this machine's; used as a context manager.
 
     Args:
         where: the contest in this machine's folder.
         other: the office.
-        tell: told what somebody must know.
+        tell: called with problems that the organiser must know.
 
     Raises:
-        UserError: if something of the folder can't be read.
+        UserError: if a file in this machine's folder can't be read.
     """
 
     def __init__(self, where: ContestFolder, other: Other, tell: Callable[[Phrase], None]) -> None:
@@ -99,11 +101,11 @@ class Follower:
         self._applications.__exit__()
 
     def step(self) -> CopyState:
-        """Copy all that has changed; return how far the copy is.
+        """Copy all that has changed; return how much the copy has now.
 
         Raises:
-            NotThere: if the office does not answer. What came before is kept; call this again.
-            CopyingEnded: if nothing is to be copied any more.
+            NotThere: if the office does not answer. What was copied before stays; call this again.
+            CopyingEnded: if this machine takes over as the office.
             UserError: if the office is not the right one, or something can't be read or written.
         """
         for _ in range(_TRIES):
@@ -134,7 +136,7 @@ class Follower:
         return CopyState(found.copied_ms, len(self._facts), whole, len(self._open))
 
     def _mark(self) -> None:
-        """Mark this folder as a copy, before anything of another machine is written into it."""
+        """Note in this folder that it is a copy; this is done before anything is copied into it."""
         found = self._ask_ended()
         if (found.role, found.office) != ("copy", self._other.address):
             machine.save(self._where.machine, Machine(role="copy", office=self._other.address))
@@ -247,10 +249,10 @@ class Follower:
 
 
 def _following(known: Sequence[AnyFact], bodies: Sequence[str]) -> tuple[AnyFact, ...]:
-    """Read facts that follow known ones.
+    """Decode the stored texts of facts, which must follow the known facts.
 
     Raises:
-        UserError: if they are no facts, or do not follow.
+        UserError: if a text is no fact, or a number does not follow the one before.
     """
     try:
         facts = tuple(msgspec.json.decode(body, type=AnyFact) for body in bodies)
@@ -263,7 +265,7 @@ def _following(known: Sequence[AnyFact], bodies: Sequence[str]) -> tuple[AnyFact
 
 
 def _missing(records: Path, facts: Sequence[AnyFact]) -> Iterator[str]:
-    """Yield the ids of the matches with a result whose packed records are not here."""
+    """Yield the ids of the matches that have a result, but no packed record here."""
     for fact in facts:
         if isinstance(fact, Played) and fact.record:
             match_id = fact.record.removesuffix(".mcap")
@@ -273,7 +275,7 @@ def _missing(records: Path, facts: Sequence[AnyFact]) -> Iterator[str]:
 
 @contextmanager
 def _for_its_owner(path: Path) -> Iterator[None]:
-    """In the block, only the owner can read new files.
+    """In the block, create new files so that only their owner can read them.
 
     Raises:
         UserError: if the file at `path` can't be written in the block.

@@ -1,4 +1,4 @@
-"""Looks for a later office at the machines that this one knows, and tells earlier ones of it."""
+"""Asks all known machines for a later office, and so tells earlier offices of this one."""
 
 import threading
 from contextlib import ExitStack
@@ -15,13 +15,13 @@ _PAUSE_S = 0.5
 
 
 class Lookout:
-    """Knocks at all known machines again and again, on a thread; used as a context manager.
+    """Asks all known machines again and again, on a thread; used as a context manager.
 
-    When it is entered, each machine was asked once: an office that comes back does nothing before
-    it knows that there is no later one.
+    On entry each machine is asked once. So an office that is started again does nothing before it
+    has looked for a later one.
 
     Args:
-        tenure: ends if a later office answers.
+        tenure: this machine's time as the office; it ends if a later office answers.
         sealing: encrypts what is sent.
 
     Raises:

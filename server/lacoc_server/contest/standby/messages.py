@@ -1,7 +1,7 @@
-"""What the two machines of an office say to each other, sealed (`sealing`).
+"""Messages between the office and its second machine; `sealing` encrypts them.
 
-The second machine says what it has, and the office answers with what is missing. Neither has to
-remember how far the other is, so a restart of either needs no care.
+The second machine says what it has, and the office answers with what is missing. Neither keeps a
+state of the other, so both can be restarted at any time.
 """
 
 from typing import Annotated, Literal
@@ -12,91 +12,98 @@ from lacoc_shared.messages.office import Copied
 from lacoc_shared.words import Phrase
 
 Kind = Literal["entry", "application", "file"]
-"""entry: files of a team, by their hash. application: an entry that waits, by its team. file: one
-of `FILES`, by its name."""
+"""Kinds of things that are copied in parts. entry: files of a team, named by their hash.
+application: an entry that waits, named by its team. file: one of `FILES`, by its name."""
 FILES = ("contest", "secrets", "code", "contacts", "stand-ins")
-"""The small files: contest file, all tokens, event code, contacts of teams, list of courts that
-stand in."""
+"""The small files: contest file, all tokens, event code, contacts of teams, and the list of courts
+that the office's machine runs in place of theirs."""
 
 
 class StandbyAsk(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"
 ):
-    """What all requests have."""
+    """Fields of all requests."""
 
     generation: Annotated[int, msgspec.Meta(ge=0)]
-    """How often the office has gone to another machine, as far as is known to who asks. An office
+    """How often the office has gone to another machine, as far as the sender can tell. An office
     that is asked with a later generation ends."""
 
 
 class KnockAsk(StandbyAsk, frozen=True, kw_only=True, tag="knock"):
-    """A question whether an office is there. The answer is `OfficeThere`."""
+    """Asks whether an office is there, and tells it the sender's generation.
+
+    The answer is `OfficeThere`.
+    """
 
 
 class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
-    """A question of the second machine: what is there that I lack? The answer is `There`."""
+    """Asks what the office has that the second machine lacks. The answer is `There`."""
 
     address: str
-    """Where the second machine would be asked if the office went on there."""
+    """Address at which the office could be asked if it went on at the second machine."""
     facts: Annotated[int, msgspec.Meta(ge=0)]
-    """How many facts it has."""
+    """How many facts the second machine has."""
     last: str
-    """Hash of the last one as it is stored; "": it has none."""
+    """Hash of its last fact as it is stored; "": it has none."""
     applications: str
-    """Version of the list of applications that it has."""
+    """Version of its list of applications."""
 
 
 class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
-    """A question for a part of something. The answer is `Copied`."""
+    """Asks for a part of an entry, an application or a small file. The answer is `Got`."""
 
     kind: Kind
     name: str
     offset: Annotated[int, msgspec.Meta(ge=0)]
-    """Where the part begins [bytes]."""
+    """Where the part begins, in bytes from the beginning."""
 
 
 class RecordAsk(StandbyAsk, frozen=True, kw_only=True, tag="record"):
-    """A question for the next part of a match's record, as `Copy` of an office to a court."""
+    """Asks for the next part of a match's record, as `Copy` between office and court.
+
+    The answer is `Got`.
+    """
 
     match_id: str
     have: dict[str, int]
-    """Bytes that are here already, by the file's name."""
+    """Length in bytes of each file of the record that is here already, by the file's name."""
 
 
 AnyAsk = KnockAsk | StepAsk | PartAsk | RecordAsk
 
 
 class OfficeThere(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="known"):
-    """An office is there."""
+    """Answer to `KnockAsk`: an office is here, with its generation."""
 
     generation: int
 
 
 class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="there"):
-    """What the office has."""
+    """Answer to `StepAsk`: what the office has."""
 
     facts: tuple[str, ...]
-    """The next facts as they are stored."""
+    """The stored texts of the next facts."""
     has_more: bool
-    """Whether there are more facts than these."""
+    """Whether the office has further facts, which did not fit."""
     files: dict[str, str]
-    """Hashes of the small files by name; a file that is not there is missing."""
+    """Hashes of the small files by name; files that do not exist are left out."""
     applications: str
     """Version of the list of applications."""
     waiting: dict[str, int] | None
-    """The list: when each team handed its files in [ms since 1970, UTC]; None: no other version."""
+    """When each team that waits handed its files in [ms since 1970, UTC]; None: the second machine
+    has this version already."""
     records: tuple[str, ...]
     """Ids of the matches whose records are still written, or not packed yet."""
 
 
 class Got(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="got"):
-    """A part of a small file, or of a record."""
+    """A part of what was asked for: of an entry, an application, a small file or a record."""
 
     part: Copied
 
 
 class Lacks(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="lacks"):
-    """There is no such thing (any more)."""
+    """What was asked for is not there, or not any more."""
 
     why: Phrase
 

@@ -1,4 +1,4 @@
-"""The other machine, as this one asks it."""
+"""Asks another machine of the contest, over the network."""
 
 from contextlib import ExitStack
 from typing import Self, TypeVar
@@ -24,7 +24,7 @@ class NotThere(Exception):
 
 
 class OtherToken(UserError):
-    """An office answers, but it has another token for its second machine."""
+    """An office answers, but with another token, so its messages can't be opened."""
 
 
 class LacksIt(Exception):
@@ -56,7 +56,7 @@ class Other:
         self._opened.close()
 
     def ask(self, request: AnyAsk, kind: type[T]) -> T:
-        """Ask, and return the answer.
+        """Send a request, and return the answer.
 
         Args:
             request: the question.
@@ -79,7 +79,7 @@ class Other:
         return self.read(found, kind)
 
     def read(self, answer: AnyAnswer, kind: type[T]) -> T:
-        """Return an answer if it is of the kind that was asked for; errors as in `ask`."""
+        """Return an answer if it is of the expected kind; else raise the errors of `ask`."""
         if isinstance(answer, Lacks):
             raise LacksIt(answer.why)
         if not isinstance(answer, kind):

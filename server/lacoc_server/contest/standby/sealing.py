@@ -1,7 +1,7 @@
 """Encrypts what the two machines of an office send each other.
 
-The key is made from a token that stands in the contest file of both machines and is never sent.
-Whoever listens, or answers in place of a machine, learns nothing and is noticed.
+The key is made from a token that stands in the contest file of both machines and is never sent. So
+somebody who listens learns nothing, and an answer of somebody else is noticed.
 """
 
 import hashlib
@@ -14,11 +14,11 @@ _NONCE_BYTES = 12
 
 
 class BadSeal(Exception):
-    """The bytes were not encrypted with this key, or for another purpose, or were changed."""
+    """The bytes can't be opened: the key or the purpose is another one, or they were changed."""
 
 
 class Sealing:
-    """Encrypts and proves messages with a key that is made from a token.
+    """Encrypts and authenticates messages with a key that is made from a token.
 
     Args:
         token: the token. A short word that a person chose can be guessed with time: the key is
@@ -34,7 +34,7 @@ class Sealing:
 
         Args:
             message: the message.
-            purpose: what it is; it opens for this purpose alone.
+            purpose: what the message is for. `open` must be given the same purpose.
         """
         nonce = os.urandom(_NONCE_BYTES)
         return nonce + self._cipher.encrypt(nonce, message, purpose)
@@ -44,7 +44,7 @@ class Sealing:
 
         Args:
             sealed: the encrypted message.
-            purpose: what it must be.
+            purpose: what the message must be for.
 
         Raises:
             BadSeal: if it was not sealed with this key for this purpose.
@@ -57,5 +57,5 @@ class Sealing:
 
 
 REQUEST = b"request"
-"""Purpose of a request. The purpose of its answer is the sealed request itself, so that no earlier
-answer can be sent again."""
+"""Purpose of each request. The purpose of its answer is the sealed request itself, so that an
+answer to an earlier request can't be sent again."""

@@ -23,17 +23,17 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import Phrase, say
 
 _COPIER_S = 10.0
-"""Longest wait for the program that copies to end."""
+"""Longest wait for the copying program to end [s]."""
 _LOOK_S = 0.05
 _LEFT = ".left"
-"""Ends the names of segments of matches that no fact knows."""
+"""Ending that is added to names of segments whose match no fact mentions."""
 
 
 def begin_copying(where: ContestFolder) -> None:
-    """Forget that a program that copied in this folder had to end.
+    """Allow copying again in a folder in which a copying program had to end.
 
     Raises:
-        UserError: if that can't be read or written.
+        UserError: if the file with this machine's role can't be read or written.
     """
     found = machine.read(where.machine)
     if found.ends:
@@ -47,7 +47,7 @@ def take_over(file: Path) -> Phrase | None:
         file: the contest file.
 
     Returns:
-        How old the copy is; None: this machine has taken over already.
+        A phrase that says how old the copy is; None: this machine has taken over already.
 
     Raises:
         Retired: if the office of this folder went on at another machine.
@@ -75,10 +75,10 @@ def take_over(file: Path) -> Phrase | None:
 
 
 def _check_gone(other: Other) -> None:
-    """Check that the office which is copied does not answer.
+    """Check that the office on the other machine does not answer.
 
     Raises:
-        UserError: if it does.
+        UserError: if it answers.
     """
     try:
         other.ask(KnockAsk(generation=0), OfficeThere)
@@ -89,7 +89,7 @@ def _check_gone(other: Other) -> None:
 
 @contextmanager
 def _alone(where: ContestFolder) -> Iterator[None]:
-    """End the program that copies, and keep all others out until the block ends.
+    """Have the copying program end; keep all other programs out of the folder until the block ends.
 
     Raises:
         UserError: if another program holds the folder.
@@ -111,10 +111,10 @@ def _alone(where: ContestFolder) -> Iterator[None]:
 
 
 def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
-    """Rename the records of matches in play that no call in the facts knows.
+    """Rename the records of unfinished matches whose calls are not among the facts.
 
-    The other machine has called them after its facts were copied. No court may go on with them:
-    nobody waits for their results.
+    The other machine called these matches after its facts were last copied. No court may go on with
+    them, because the office here would not take their results.
 
     Args:
         records: folder of the records.

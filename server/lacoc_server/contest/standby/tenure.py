@@ -1,4 +1,4 @@
-"""How long a machine is its contest's office: until it hears of a later one."""
+"""The time in which a machine is its contest's office: until it hears of a later one."""
 
 import threading
 
@@ -23,21 +23,21 @@ class Tenure:
         self._is_over = False
 
     def hear(self, generation: int) -> None:
-        """Take note of an office's generation: if it is a later one, this tenure is over.
+        """End this tenure if another office has a later generation.
 
-        From then on the folder takes no facts, and no office can be started in it.
+        After that no fact can be appended in this folder, and no office can be started in it.
 
         Raises:
-            UserError: if that can't be written.
+            UserError: if the file with this machine's role can't be written.
         """
         if generation > self.generation:
             self.end()
 
     def end(self) -> None:
-        """End this tenure: there is a later office.
+        """End this tenure, because there is a later office.
 
         Raises:
-            UserError: if that can't be written.
+            UserError: if the file with this machine's role can't be written.
         """
         with self._one:
             if not self._is_over:
@@ -48,16 +48,16 @@ class Tenure:
         """Check that this machine is still the office.
 
         Raises:
-            Retired: if it is not.
+            Retired: if its tenure is over.
         """
         if self._is_over:
             raise Retired(say("standby.is-retired"))
 
     def know(self, address: str) -> None:
-        """Remember the address of a machine at which the office may go on.
+        """Remember the address of a machine that copies this office and may take over.
 
         Raises:
-            UserError: if it can't be written.
+            UserError: if the file with this machine's role can't be written.
         """
         with self._one:
             found = machine.read(self._where.machine)

@@ -1,8 +1,8 @@
-"""A game that was played without a network: its record must be what `simulate` writes.
+"""Checks a game that was played without a network: its record must be what `simulate` writes.
 
-The player of such games is shown the recorded frames, and must put in exactly what the record has:
-who sits down, when play begins, each key, and the decision at the end. So nothing that a match at a
-court may have can be added, whatever it is. This needs no physics and is exact on any machine.
+The generator of a simulated match's inputs is given the recorded frames. It must yield exactly the
+recorded inputs: joins, the start of play, each key, and the decision at the end. So a forger can
+add no other input. This needs no physics, and is exact on any machine.
 """
 
 from collections.abc import Sequence
@@ -28,38 +28,38 @@ from lacoc_shared.words import Phrase, say
 
 
 class Side(NamedTuple):
-    """Who played in a seat, as facts and entries say."""
+    """The team, entry and bot of a seat, as the facts say."""
 
     team: str
     entry: ContestEntry
     steer: str
-    """The bot that steered the team if its entry has none; "": the facts do not name one."""
+    """The bot that steered the team if its entry has none; "": the facts name none."""
 
 
 class InputCheck(NamedTuple):
-    """What came of a check of a game's inputs."""
+    """The result of a check of a game's inputs."""
 
     wrong: tuple[Phrase, ...] = ()
-    """What no game without a network can have."""
+    """Inputs that a game without a network can't have."""
     unchecked: tuple[Phrase, ...] = ()
     """Why the keys of a team could not be checked."""
 
 
 class _NoSheet(Exception):
-    """Play begins in the record, and no sheet says who plays."""
+    """Play begins in the record, but the record has no sheet that says who plays."""
 
 
 def check_inputs(
     record: Record, arena: Arena, sides: Sequence[Side], late_ticks: int, *, programs: bool
 ) -> InputCheck:
-    """Check that the inputs of a record are those that `simulate` puts in.
+    """Check that the inputs of a record are those that `simulate` would give to the match.
 
     Args:
         record: the record of the game.
         arena: its arena.
         sides: who played, by seat.
-        late_ticks: how many ticks later than play the bots started.
-        programs: whether to run the bots' programs that came with entries.
+        late_ticks: how many ticks after the start of play the bots began.
+        programs: whether to run the programs of bots that are in entries.
     """
     version = record.header.versions.get("lacoc", "?")
     others = [_recorded(record, seat) for seat in range(len(sides))]
@@ -91,7 +91,9 @@ def check_inputs(
 def ends_alike(
     record: Record, arena: Arena, sides: Sequence[Side], late_ticks: int, *, programs: bool
 ) -> bool:
-    """Play the game again on this machine, and return whether it ends with the recorded result.
+    """Play a game again on this machine with its bots.
+
+    Return whether it ends with the recorded result.
 
     Raises:
         UserError: if a bot is not installed here, or breaks.
@@ -117,7 +119,8 @@ def _bot(arena: Arena, side: Side, programs: bool) -> BotFactory:
     """Find the bot of a team.
 
     Raises:
-        UserError: if it is not installed, not named, or a program that must not run.
+        UserError: if the bot is not installed here, if nothing names it, or if it is a program and
+            programs must not run.
     """
     entry, team = side.entry, side.team
     if entry.program is not None and not programs:
@@ -153,7 +156,7 @@ def _recorded(record: Record, seat: int) -> BotFactory:
 
 
 def _first_difference(record: Record, players: Sequence[Player]) -> int | None:
-    """Return the first beat whose inputs are not those of `simulate`; None: there is none.
+    """Return the first beat whose inputs differ from those of `simulate`; None: all are equal.
 
     Raises:
         UserError: if a bot breaks.

@@ -18,26 +18,30 @@ _LONGEST_S = 3600.0
 
 
 class ContestCheck(NamedTuple):
-    """What the check of a published contest found."""
+    """The result of a check of a published contest."""
 
     findings: tuple[Phrase, ...]
-    """What does not follow; empty: nothing contradicts anything."""
+    """What contradicts the facts or the records; empty: nothing does."""
     unchecked: tuple[Phrase, ...]
-    """What could not be checked, and why: keys of bots, each with its game; the sheet."""
+    """What could not be checked, with the reason: keys of bots, each with its game, or the
+    sheet."""
     decisions: tuple[Phrase, ...]
-    """What people decided; no record can prove it."""
+    """Decisions of the organiser and staff; no record can prove them."""
     in_play: tuple[Phrase, ...]
-    """What referees decided in games at courts."""
+    """Decisions of referees in games at courts."""
     facts: int
     games: int
     proven: int
-    """Games whose records were proven; of the others only the results were compared."""
+    """Number of games whose records were proven; of all other games only the results were
+    compared."""
     by_bots: int
-    """Games in which the keys of all bots were checked."""
+    """Number of games with bots in which the keys of all bots were checked."""
     by_people: int
-    """Games at courts between teams without bots: no record shows who pressed the keys."""
+    """Number of games at courts between teams without bots: no record shows who pressed their
+    keys."""
     least_forged: int
-    """If this many records are forged, a check finds one with probability `sampling.CONFIDENCE`."""
+    """If at least this many records are forged, a check of this size finds one with probability
+    `sampling.CONFIDENCE`."""
 
 
 def check(
@@ -54,15 +58,15 @@ def check(
 
     Args:
         folder: the published folder.
-        progress: told how many games are checked, and how many there are; first when facts and
-            tables are computed, and the games begin.
+        progress: called with the number of checked games and of all games; first with 0, once facts
+            and tables are checked.
         earlier: folder of an earlier publication of the contest, or a file with its facts. These
             facts must still be there, unchanged. None: nothing is compared.
         sampled: number of games whose records are proven, chosen by chance; None: all. The results
             of all games are compared with their records.
-        seed: chooses the games.
+        seed: for the choice by chance; the same seed chooses the same games.
         jobs: number of processes; None: one for each core.
-        programs: whether to run the bots' programs that came with entries.
+        programs: whether to run the programs of bots that are in entries.
 
     Raises:
         UserError: if facts can't be read, or name a format that is not known here.
@@ -95,7 +99,7 @@ def check(
 
 
 def _steered(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield which bots steered teams that have entered none: somebody chose them."""
+    """Yield, as a decision of people, which bots steered teams without a bot in how many games."""
     bots = Counter(fact.steer for fact in facts if isinstance(fact, Played) and fact.steer)
     for bot, games in bots.items():
         yield say("verify.steered", bot=bot, games=games)

@@ -1,4 +1,4 @@
-"""A game of a published contest: its result is compared with its record, and that is proven."""
+"""Checks a game of a published contest: compares its result with its record, which it proves."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -36,40 +36,40 @@ from lacoc_shared.words import Phrase, say
 RECORD_BYTES = 1 << 27
 """Largest record that is read. A match of three minutes has 3 MB."""
 _OTHER_PHYSICS = ("replay.other-mujoco", "replay.other-model")
-"""Why a record can't be proven by this software, though nothing speaks against it."""
+"""Codes of the reasons why this software can't prove a record that may still be right."""
 _ROUTINE = ("ready", "start", "official", "next")
-"""Decisions that each match at a court has; they change no result."""
+"""Decisions that every match at a court has; they change no result, so they are not reported."""
 
 
 class GameToCheck(msgspec.Struct, frozen=True, kw_only=True):
-    """A game to check: what the facts say about it. A process can take it."""
+    """A game to check, with what the facts say about it; it can be sent to another process."""
 
     played: Played
     about: Phrase
-    """Which game it is, and who played: "Semi-final 1, game 2 of 3 (Ants – Bees)"."""
+    """The game and its teams: "Semi-final 1, game 2 of 3 (Ants – Bees)"."""
     plan: Planned | None
-    """The plan of its stage; None: it was not the turn of this game."""
+    """The plan of its stage; None: by the facts, this game was not to be played then."""
     why_not: Phrase | None = None
-    """Why it was not the turn of this game."""
+    """Why this game was not to be played then; None: it was."""
     call: Called | None = None
     """The call by which a court got the game; None: it was played without a network."""
     late_ticks: int = 0
-    """How many ticks later its bots start, if it was played without a network."""
+    """For a game without a network: how many ticks after the start of play its bots begin."""
     files: tuple[tuple[str, ...], ...]
-    """By seat: hashes of the entries with which the team may have played."""
+    """By seat: hashes of the entries with which the team may have played, by the facts."""
 
 
 class GameCheck(msgspec.Struct, frozen=True, kw_only=True):
-    """What the check of a game found."""
+    """The result of the check of a game."""
 
     wrong: tuple[Phrase, ...] = ()
-    """What does not follow from facts, entries and record."""
+    """Contradictions between facts, entries and record."""
     unchecked: tuple[Phrase, ...] = ()
-    """What could not be checked here, and why: keys of bots, other physics."""
+    """What could not be checked here, with the reason: keys of bots, or other physics."""
     decided: tuple[Phrase, ...] = ()
-    """What referees decided in it; no record proves that they were right."""
+    """Decisions of referees in this game; no record proves that they were right."""
     has_bots: bool = False
-    """Whether a bot has entered for one of the teams, or steered it."""
+    """Whether a bot played for a team: one that the team entered, or one that steered it."""
 
 
 def games_of(facts: Sequence[AnyFact]) -> list[GameToCheck]:
@@ -105,7 +105,7 @@ def _game(facts: Sequence[AnyFact], played: Played) -> GameToCheck:
 
 
 def _why_not(match: ContestMatch, call: Called | None, played: Played) -> Phrase | None:
-    """Say why a game was not the next one of its match; None: it was."""
+    """Say why a game was not the next one of its match when it was played; None: it was."""
     for game in match.games:
         if game.number == played.game:
             return say("due.has-result", fact=game.fact)
@@ -119,13 +119,13 @@ def _why_not(match: ContestMatch, call: Called | None, played: Played) -> Phrase
 
 
 def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = False) -> GameCheck:
-    """Compare the result of a game with its record.
+    """Check a game: compare its result with its record, and prove the record if `proven`.
 
     Args:
         folder: the published folder.
         game: the game.
-        proven: whether to prove the record too: its inputs are played again.
-        programs: whether to run the bots' programs that came with entries.
+        proven: whether to prove the record, too, by simulating its inputs again.
+        programs: whether to run the programs of bots that are in entries.
     """
     played = game.played
     file, about = played.record, game.about
@@ -150,7 +150,7 @@ def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = F
 
 
 def _compared(folder: Path, game: GameToCheck, record: Record, programs: bool) -> GameCheck:
-    """Compare a game with its record, without physics; arguments as in `check_game`.
+    """Compare a game with its record, without physics; the arguments are those of `check_game`.
 
     Raises:
         UserError: if the arena of the plan is not installed, or its settings are wrong.
@@ -183,10 +183,11 @@ def _compared(folder: Path, game: GameToCheck, record: Record, programs: bool) -
 def _proven(
     folder: Path, game: GameToCheck, record: Record, found: GameCheck, programs: bool
 ) -> GameCheck:
-    """Prove the record of a game, and add what that found.
+    """Prove the record of a game; return `found` with what the proof adds.
 
-    With another arithmetic a forger can choose between paths that are a little apart. So a game
-    without a network is then played again: what it ends with here is nobody's choice.
+    On a machine with other arithmetic, the proof must allow small deviations, and a forger could
+    use them to choose the result. So a game without a network is then also played again here, and
+    must have the same result.
 
     Raises:
         UserError: if the record is damaged.
@@ -217,7 +218,7 @@ def _proven(
 
 
 def _arena(game: GameToCheck) -> Arena:
-    """Load the arena of a game; an installed one alone, because facts must not name code to run.
+    """Load the arena of a game if it is installed; facts must not be able to name code to run.
 
     Raises:
         UserError: if it is not installed, or its settings are wrong.
@@ -227,7 +228,7 @@ def _arena(game: GameToCheck) -> Arena:
 
 
 def _sides(folder: Path, game: GameToCheck, record: Record) -> list[Side]:
-    """Return who played, by seat; a team without an entry that fits the record is left out."""
+    """Return the side of each seat; leave out a team none of whose entries fits the record."""
     entries = EntryFolder(folder / ENTRIES)
     sides: list[Side] = []
     for seat, team in enumerate(game.played.teams):
@@ -292,7 +293,7 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
 
 
 def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:
-    """Return whether a record is of the court of the call; or without a call, of no court."""
+    """Return whether a record is from the court of the call; without a call, from no court."""
     if game.call is not None:
         return setup.court == game.call.court
     wanted = setup_of(setup.match_id, arena, setup.limits)
@@ -301,7 +302,7 @@ def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) 
 
 
 def _decisions(record: Record, game: GameToCheck) -> Iterator[Phrase]:
-    """Yield what referees decided in a game, besides what each match has."""
+    """Yield the decisions of referees in a game, without those that every match has."""
     for event in record.events:
         if event.kind == "decision" and event.data.get("decision") not in _ROUTINE:
             yield say(
@@ -313,7 +314,7 @@ def _decisions(record: Record, game: GameToCheck) -> Iterator[Phrase]:
 
 
 def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings without the looks of the robots, which every court may choose."""
+    """Return settings without the colours and patterns of robots, which every court may choose."""
     seats = [
         {name: value for name, value in seat.items() if name not in ("colour", "pattern")}
         for seat in settings.get("seat", ())

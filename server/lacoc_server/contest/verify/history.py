@@ -1,4 +1,4 @@
-"""The order of facts: what must have come before what, and which draws follow from it; pure."""
+"""Checks the order of facts: what must come before what, and whether each draw follows; pure."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -21,7 +21,7 @@ from lacoc_server.contest.league.timetable.schedule import due
 from lacoc_shared.words import Phrase, say
 
 OfFiles = Entered | FilesChanged
-"""Facts that give a team its files."""
+"""Facts that give a team its files or change them."""
 _HARMLESS = (
     "league.match-void",
     "league.other-teams",
@@ -31,17 +31,18 @@ _HARMLESS = (
     "league.result-unneeded",
     "league.result-void",
 )
-"""Why facts of an honest contest may change nothing: a later decision has changed the bracket."""
+"""Codes of reasons why a fact may have no effect in an honest contest, too, for example after a
+later decision."""
 
 
 def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase]:
-    """Yield what in the facts can't come from an honest contest.
+    """Yield each thing in the facts that an honest contest can't have.
 
     Times are not compared, because a clock may have been corrected: numbers give the order.
 
     Args:
         facts: all facts in their order.
-        contest: what follows from them.
+        contest: the contest that follows from them.
     """
     yield from _gaps(facts)
     yield from _entries(facts)
@@ -52,7 +53,7 @@ def check_history(facts: Sequence[AnyFact], contest: Contest) -> Iterator[Phrase
 
 
 def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
-    """Yield what people decided; nothing can prove that they did, or that they were right.
+    """Yield the decisions of people, in words; no check can prove that they are real or right.
 
     Raises:
         UserError: if the facts name a format or a tie-break that is not known here.
@@ -67,7 +68,7 @@ def decisions(facts: Iterable[AnyFact]) -> Iterator[Phrase]:
 
 
 def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield the first fact of an earlier publication that is missing or different now."""
+    """Yield the first fact of an earlier publication that is missing or different now, if any."""
     for before, now in zip(earlier, (*facts, *(None,) * len(earlier)), strict=False):
         if before != now:
             yield say("verify.rewritten", fact=before.id)
@@ -77,7 +78,7 @@ def check_earlier(earlier: Sequence[AnyFact], facts: Sequence[AnyFact]) -> Itera
 def call_of(facts: Sequence[AnyFact], played: Played) -> Called | None:
     """Return the call by which a court got a game; None: it was played without a network.
 
-    A call that was taken back, or that has had its result, is none any more.
+    A call does not count if it was taken back, or if an earlier result ended it.
     """
     call: Called | None = None
     for fact in facts[: facts.index(played)]:
@@ -96,8 +97,8 @@ def files_of(
     """Return the hashes of the files with which a team may have played a game.
 
     Without a network these are its newest files before the result. At a court they are its newest
-    ones before the call, or those that it has handed in since: a court that lost its machine may
-    have been given the game again.
+    files before the call, or any that it handed in between call and result: a court that lost its
+    machine may have been given the game again with newer files.
     """
     began, ended = facts.index(call or played), facts.index(played)
     hashes: list[str] = []
@@ -129,7 +130,7 @@ def _entries(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
 
 
 def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Draw again; yield each draw that is not the one that was due after the facts before it."""
+    """Make each draw again from the facts before it; yield the draws that differ from it."""
     for at, fact in enumerate(facts):
         if isinstance(fact, Drawn | RoundDrawn):
             again = due(compute(facts[:at], FORMATS), FORMATS)
@@ -140,7 +141,7 @@ def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
 def _is_same(due: Closed | Drawn | RoundDrawn, drawn: Drawn | RoundDrawn) -> bool:
     """Return whether a draw is the one that was due, or has the same teams in another order.
 
-    Another order is that of a lot, or the organiser's, who gave a reason.
+    Another order is right if it follows from the lot, or if the organiser gave a reason for it.
     """
     if isinstance(due, RoundDrawn) and isinstance(drawn, RoundDrawn):
         return (due.stage, due.round, due.pairs) == (drawn.stage, drawn.round, drawn.pairs)

@@ -1,4 +1,4 @@
-"""A published folder: its facts are read, and all in it that follows from them is checked."""
+"""Reads the facts of a published folder, and checks all files in it that follow from them."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -31,14 +31,14 @@ from lacoc_shared.words import Phrase, say
 _MOST_BYTES = 1 << 25
 """Largest file of facts, sheet or table that is read. 10,000 games have 4 MB."""
 _TIES_SINCE = 4
-"""Version of the sheet since which teams that tie share a rank."""
+"""The first version of the sheet in which tied teams share a rank."""
 
 
 def read(path: Path) -> tuple[AnyFact, ...]:
     """Read the facts of a published folder, or a file of facts.
 
     Raises:
-        UserError: if there are none, or they can't be read.
+        UserError: if the file does not exist, or can't be read.
     """
     if path.is_dir():
         return league_facts.decode(regular.read(path, FACTS, most_bytes=_MOST_BYTES))
@@ -47,7 +47,7 @@ def read(path: Path) -> tuple[AnyFact, ...]:
 
 
 def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
-    """Compute the contest again; yield what does not follow from the facts.
+    """Compute the contest again from its facts; yield whatever in the folder contradicts it.
 
     Records are not looked at: see `verify.games`.
 
@@ -69,13 +69,13 @@ def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase
 
 
 def _check_facts(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
-    """Check that nothing in the file was passed over: a field twice, or one that is not known."""
+    """Check that the file of facts has no more than was read, such as an unknown field."""
     if regular.read(folder, FACTS, most_bytes=_MOST_BYTES) != league_facts.encode(facts):
         yield say("verify.more-in-facts", file=FACTS)
 
 
 def other_sheet(folder: Path) -> Phrase | None:
-    """Return why the sheet can't be compared: another version wrote its layout; None: it can be."""
+    """Return why the sheet can't be compared: its layout has another version. None: it can be."""
     found = _version(folder)
     if found == sheets.VERSION:
         return None
@@ -83,7 +83,10 @@ def other_sheet(folder: Path) -> Phrase | None:
 
 
 def _version(folder: Path) -> int:
-    """Return the version of the sheet's layout; ours if it can't be read: that is told later."""
+    """Return the version of the sheet's layout, or ours if the sheet can't be read.
+
+    A sheet that can't be read is reported later.
+    """
     try:
         return msgspec.json.decode(_sheet(folder), type=_AnySheet).version
     except (UserError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
@@ -91,7 +94,7 @@ def _version(folder: Path) -> int:
 
 
 class _AnySheet(msgspec.Struct):
-    """The one entry that sheets of all versions have."""
+    """Reads only the version of a sheet, which sheets of all versions have."""
 
     version: int
 
@@ -112,7 +115,10 @@ def _check_tables(folder: Path, contest: Contest) -> Iterator[Phrase]:
 
 
 def _as_written(folder: Path, contest: Contest) -> Contest:
-    """Return a contest with the ranks that the version of the folder gave: before 4 none shared."""
+    """Return a contest with ranks as the version that wrote the folder gave them.
+
+    Before version 4 of the sheet, no teams shared a rank.
+    """
     if _version(folder) >= _TIES_SINCE:
         return contest
     return replace(

@@ -1,4 +1,4 @@
-"""A check of some games, chosen by chance, and what it is worth; pure."""
+"""Chooses games by chance, and says how likely a check of only these finds a forged one; pure."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from typing import TypeVar
 T = TypeVar("T")
 
 CONFIDENCE = 0.95
-"""Probability with which a sample finds what `least_forged` promises."""
+"""Probability with which a sample has a forged game, if `least_forged` or more are forged."""
 
 
 def sample(games: Sequence[T], number: int, seed: int) -> list[T]:
@@ -17,7 +17,7 @@ def sample(games: Sequence[T], number: int, seed: int) -> list[T]:
 
 
 def missed(games: int, forged: int, checked: int) -> float:
-    """Return the probability that a sample has none of the forged games.
+    """Return the probability that a sample of games has no forged one.
 
     Args:
         games: number of all games.
@@ -28,11 +28,10 @@ def missed(games: int, forged: int, checked: int) -> float:
 
 
 def least_forged(games: int, checked: int) -> int:
-    """Return the least number of forged games of which a sample most likely has one.
+    """Return how many games must be forged at least, so that a sample most likely has one of them.
 
-    Most likely: with probability `CONFIDENCE` or more. With fewer forged games it is less likely.
-    If nothing is checked, no number is enough; the result is then one more than the number of
-    games. Arguments are as in `missed`.
+    "Most likely" means with probability `CONFIDENCE` or more. If no number is enough, because no
+    game is checked, return one more than the number of games. Arguments are as in `missed`.
     """
     enough = (n for n in range(1, games + 1) if missed(games, n, checked) <= 1 - CONFIDENCE)
     return next(enough, games + 1)

@@ -1,4 +1,4 @@
-"""What a format is: it says who meets whom in a stage, and how its teams are ranked."""
+"""The interface of a format, which says who meets whom in a stage, and how its teams are ranked."""
 
 from collections.abc import Collection, Mapping
 from typing import Protocol
@@ -15,12 +15,12 @@ Pair = tuple[str, ...]
 
 
 class Stage(msgspec.Struct, frozen=True, kw_only=True):
-    """What of a stage is fixed once it is drawn."""
+    """What is fixed of a stage once it is drawn: settings, teams, and the rounds drawn so far."""
 
     name: str
     settings: StageSettings
     entries: tuple[str, ...]
-    """By seeding, the best first."""
+    """The teams by seeding, the best first."""
     drawn: tuple[tuple[Pair, ...], ...] = ()
     """The rounds that were drawn, in a format that draws rounds one by one."""
 
@@ -29,7 +29,7 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
         return f"{self.name}:{section}{round_number}.{number}"
 
     def order(self, usual: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the codes that rank the teams: those of the plan, else the usual ones."""
+        """Return the codes that rank the teams: points and the plan's tie-breaks, or `usual`."""
         return ("points", *self.settings.tie_breaks) if self.settings.tie_breaks else usual
 
 
@@ -41,20 +41,23 @@ class Format(Protocol):
     decisive: bool
     """True: a match must have a winner."""
     balanced: bool
-    """True: what was played says who sits left. False: the pairings say it."""
+    """True: the team that sat left less often sits left. False: the pairing says who sits left."""
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
-        """Return all pairings that are fixed; each comes after the pairings its sources name."""
+        """Return all pairings that are fixed so far.
+
+        Each comes after the pairings from which its teams come.
+        """
 
     def rounds(self, stage: Stage) -> int:
-        """Return the most rounds that are drawn one by one; 0: the draw fixes all rounds."""
+        """Return the largest number of rounds that are drawn one by one; 0: none is."""
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> bool:
         """Return whether the stage ends before all its rounds are drawn.
 
-        Asked when all matches of the drawn rounds are decided.
+        This is called only when all matches of the drawn rounds are decided.
         """
 
     def next_round(
@@ -75,17 +78,17 @@ class Format(Protocol):
 
 
 class _AllRounds:
-    """A method of those formats in which all rounds are played."""
+    """Base of the formats in which all rounds are played."""
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> bool:
-        """Return False: all rounds are played."""
+        """Return False: a stage of this format never ends early."""
         return False
 
 
 class DrawnAtOnce(_AllRounds):
-    """Methods of those formats whose draw fixes all rounds at once."""
+    """Base of the formats whose draw fixes all rounds at once."""
 
     def rounds(self, stage: Stage) -> int:
         """Return 0: no round is drawn later."""
@@ -94,15 +97,15 @@ class DrawnAtOnce(_AllRounds):
     def next_round(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
-        """Return no pairs."""
+        """Return no pairs: there is no round to draw."""
         return ()
 
 
 class DrawnByRound(_AllRounds):
-    """Methods of those formats whose rounds are drawn one by one, in a single table."""
+    """Base of the formats whose rounds are drawn one by one, and which have a single table."""
 
     order: tuple[str, ...]
-    """Codes of the tie-breaks, unless the plan has others."""
+    """Codes that rank the teams, unless the plan names tie-breaks."""
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
         """Return the pairings of the rounds that are drawn."""
@@ -120,6 +123,6 @@ class DrawnByRound(_AllRounds):
     def tables(
         self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
-        """Rank the teams."""
+        """Rank all teams in one table."""
         found = counted(matches.values())
         return (standings(stage.entries, found, stage.order(self.order), last),)

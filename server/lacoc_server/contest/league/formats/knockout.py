@@ -1,4 +1,4 @@
-"""Single and double knockout, as tables of sources."""
+"""Single and double knockout: each pairing names the earlier pairings from which its teams come."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
@@ -10,9 +10,9 @@ from lacoc_server.contest.league.pairing import AnySource, Bye, Entrant, LoserOf
 from lacoc_server.contest.league.standings import Standing, Table, counted, standings
 
 ORDER = ("seed",)
-"""What orders teams that went out in the same round; they share the rank."""
+"""The tie-break of a knockout's table: teams that went out in the same round share a rank."""
 _LEVEL = ("difference", "seed")
-"""What decided a match that was level in games; tie-breaks have the same codes."""
+"""The ways to decide a match that is level in games; tie-breaks have the same codes."""
 
 
 class Knockout(DrawnAtOnce):
@@ -59,14 +59,14 @@ class Knockout(DrawnAtOnce):
 
 
 def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
-    """Yield the decided matches whose two teams end in two places next to each other."""
+    """Yield the decided matches that settle two places next to each other, such as the final."""
     for match in matches:
         if match.pairing.winner_place and match.state == "decided":
             yield match
 
 
 def _places(matches: Collection[ContestMatch]) -> dict[str, int]:
-    """Return the final places that are decided, by team."""
+    """Return the final places that are settled, by team."""
     resets = {match.pairing.only_if_second_won: match for match in matches}
     places: dict[str, int] = {}
     for match in matches:
@@ -81,7 +81,7 @@ def _places(matches: Collection[ContestMatch]) -> dict[str, int]:
 
 
 def _leaving(match: ContestMatch) -> list[str]:
-    """Return the teams that leave the stage after a decided match."""
+    """Return the teams that leave the stage when this decided match is over."""
     if not match.winner:
         leaving = match.teams
     elif match.pairing.loser_goes_on:
@@ -92,9 +92,10 @@ def _leaving(match: ContestMatch) -> list[str]:
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
-    """Place the teams in a bracket: the two best can only meet in its final, and so on.
+    """Place the teams in a bracket: the best two can meet only in the final, and so on.
 
-    The best teams have the byes. The list is as long as the next power of two.
+    The list has a team or a bye for each place of round 1: as many as the next power of two. The
+    best teams have the byes.
     """
     order = [0]
     while len(order) < len(entries):

@@ -15,11 +15,11 @@ from lacoc_server.contest.league.formats.round_robin import ORDER, circle_round
 from lacoc_server.contest.league.matches import ContestMatch, CountedGame
 
 _LAPS = 10
-"""Most laps, unless the plan has a number of rounds."""
+"""How many laps are played at most, if the plan gives no number of rounds."""
 
 
 class Sequential(DrawnByRound):
-    """The format."""
+    """The sequential format, as described above."""
 
     settings = frozenset({"confidence", "games", "places", "rounds", "tie_breaks"})
     decisive = False
@@ -27,16 +27,16 @@ class Sequential(DrawnByRound):
     order = ORDER
 
     def rounds(self, stage: Stage) -> int:
-        """Return the most rounds."""
+        """Return the largest number of rounds."""
         return stage.settings.rounds or _LAPS * _lap(stage)
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> bool:
-        """Return whether a lap is over after which the first places are decided.
+        """Return whether a lap has just ended, and the first places are decided.
 
-        Each look at the results, and each place, could be the one that is wrong. So each of them
-        may be wrong only with its part of the chance that the confidence leaves.
+        The test is made after each lap and for each place, and any of these tests could be wrong.
+        So the allowed probability of an error is divided by their number (Bonferroni).
         """
         drawn, lap, places = len(stage.drawn), _lap(stage), stage.settings.places
         if not drawn or drawn % lap:
@@ -51,7 +51,10 @@ class Sequential(DrawnByRound):
     def next_round(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
-        """Pair the next round, by the circle method; opponents of a team that left have a rest."""
+        """Pair the next round, by the circle method.
+
+        A team rests if its opponent has left the contest.
+        """
         teams = stage.entries
         pairs = [
             (teams[left], teams[right])
@@ -63,11 +66,11 @@ class Sequential(DrawnByRound):
 def lead(games: Iterable[CountedGame], one: str, other: str) -> float:
     """Return by how much a team is ahead of another one, in standard deviations (a score test).
 
-    The lead is what the team won more, against the other one and against the same opponents. Its
-    standard deviation is what it would be if both were equally strong.
+    The lead compares what both teams won against each other and against the same opponents. Its
+    standard deviation is computed as if both teams were equally strong.
 
     Args:
-        games: all games of the stage; those of teams that met only one of the two do not matter.
+        games: all games of the stage; games against opponents of only one of the two do not matter.
         one: the team.
         other: the other team.
     """
@@ -93,7 +96,7 @@ def lead(games: Iterable[CountedGame], one: str, other: str) -> float:
 
 
 def _lap(stage: Stage) -> int:
-    """Return after how many rounds everybody has met everybody."""
+    """Return the number of rounds in a lap, in which everybody meets everybody once."""
     return len(stage.entries) - 1 + len(stage.entries) % 2
 
 

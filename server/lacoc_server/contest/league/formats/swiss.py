@@ -2,8 +2,8 @@
 
 Rounds are drawn one by one (`facts.RoundDrawn`), so a later correction changes points but not who
 has met. The pairs are those of the FIDE (Dutch) system, with one rule that is stricter: a team that
-sat left once more than right must sit right. Where the system knows no way out, and in stages too
-large for its engine, a matching breaks as few rules as possible.
+sat left once more than right must sit right. If the system finds no pairing, or the stage is too
+large for its engine, a matching algorithm breaks as few rules as possible.
 """
 
 import logging
@@ -24,11 +24,11 @@ logging.getLogger("caissify_pairings").setLevel(logging.CRITICAL)
 ORDER = ("points", "buchholz-cut", "buchholz", "sonneborn", "direct", "difference", "seed")
 
 LARGEST = 60
-"""Most teams that the engine pairs: 60 take a second, 200 some minutes."""
+"""Largest number of teams that the engine pairs: 60 teams take a second, 200 some minutes."""
 
 
 class SwissTeam(msgspec.Struct, kw_only=True):
-    """A team as the pairing of the next round sees it."""
+    """What the pairing of the next round must know of a team."""
 
     team: str
     number: int
@@ -37,9 +37,10 @@ class SwissTeam(msgspec.Struct, kw_only=True):
     """2 for a match won, 1 for a draw."""
     met: set[str] = msgspec.field(default_factory=set)
     sides: list[int] = msgspec.field(default_factory=list)
-    """Of each match: 1 left, −1 right."""
+    """For each match with a game: 1 if it sat left, −1 if right."""
     floats: list[str] = msgspec.field(default_factory=list)
-    """Of each round: whether the opponent had fewer points ("down"), more ("up") or as many."""
+    """For each round: "down" if the opponent had fewer points or there was none, "up" if more, else
+    "none"."""
     had_bye: bool = False
 
     @property
@@ -49,7 +50,7 @@ class SwissTeam(msgspec.Struct, kw_only=True):
 
 
 class Swiss(DrawnByRound):
-    """The format."""
+    """The Swiss format, as described above."""
 
     settings = frozenset({"games", "rounds", "tie_breaks"})
     decisive = False
@@ -95,7 +96,7 @@ def history(stage: Stage, matches: Mapping[str, ContestMatch]) -> list[SwissTeam
 
 
 def _add(player: SwissTeam, side: int, others: Sequence[str], match: ContestMatch) -> None:
-    """Add a past match to what is known of a player: opponents, sides, points, byes.
+    """Add a past match to a player's opponents, sides, points and byes.
 
     A match without a game adds no side.
     """
@@ -120,8 +121,9 @@ def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
 def seat_pair(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
-    Who sat left less often sits left. If both did equally often, who sat right last does; if that
-    decides nothing either, the team with the smaller number sits left if this number is odd.
+    Who sat left less often sits left. If both did equally often, the team that sat right in its
+    last match sits left. If both sat on the same side, the team with the smaller number sits left
+    if this number is odd, else right.
     """
     first, second = sorted((one, other), key=lambda player: player.number)
     if first.number % 2 == 0:
@@ -191,7 +193,7 @@ def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTe
 
 
 def _colours(player: SwissTeam) -> list[str]:
-    """Return a history of colours that makes the engine give a team the right side next.
+    """Return a history of colours that makes the engine give a team the side that it is due next.
 
     The engine forces a change only after the same colour twice. Here a team must change as soon as
     it has sat more often on one side than on the other. So the engine is told that the team had
@@ -253,7 +255,7 @@ def fewest_faults(players: Sequence[SwissTeam]) -> list[tuple[SwissTeam, ...]]:
 
 
 def _cost(pair: Sequence[SwissTeam], apart: int, fold: int, many: int) -> int:
-    """Return the cost of a pair: one graver fault costs more than any number of lesser ones.
+    """Return the cost of a pair; one graver fault costs more than lesser faults in all other pairs.
 
     The gravest are those that `faults` counts, in its order. Then comes `apart`, then `fold`.
 

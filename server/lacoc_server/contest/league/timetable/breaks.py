@@ -11,24 +11,25 @@ _FOREVER_MS = 1 << 62
 
 
 class Break(msgspec.Struct, frozen=True, kw_only=True):
-    """A time in which no game is called, if it is not over yet."""
+    """A time in which no game is called; it may be over already."""
 
     until_ms: int
-    """Its end, in milliseconds since 1970, UTC; 0: the organiser says when."""
+    """Its end, in milliseconds since 1970, UTC; 0: it lasts until the organiser ends it."""
     fixture: Phrase | None = None
-    """The match after it: "Semi-final 1"; None: nobody can say."""
+    """Name of the match after it: "Semi-final 1"; None: no match is known to follow."""
     who: tuple[Phrase, Phrase] | None = None
-    """Who plays in it."""
+    """The left and the right side of that match, as far as they are known."""
 
 
 def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:
-    """Return the break that is on, or was the newest one; None: there is none.
+    """Return the break that is on now, or else the newest one; None: there was none.
 
-    It follows from the facts alone, so whoever shows it compares its end with the clock.
+    It follows from the facts alone, so its end may be past: whoever shows it compares that with the
+    clock.
 
     Args:
         contest: the contest.
-        coming: its matches to come (`foreseen`).
+        coming: its matches that are still to come, from `foreseen`.
     """
     if contest.over:
         return None

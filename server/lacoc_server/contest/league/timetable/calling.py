@@ -1,4 +1,4 @@
-"""Which game goes to which court, when it is taken back, and what came of it; pure."""
+"""Which game goes to which court, when a game is taken back, and how it ended; pure."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -9,16 +9,16 @@ from lacoc_server.contest.league.timetable.schedule import assign
 from lacoc_shared.words import Phrase
 
 LOST_MS = 20_000
-"""A court that was not heard for this long loses its game."""
+"""A court that was not heard for this long loses its game [ms]."""
 _LATE_MS = 30_000
-"""A team that has not joined for this long after the call of its game has not come."""
+"""A team counts as absent if it has not joined for this long after the call of its game [ms]."""
 
 OPEN_CALL = "open."
-"""Begins the calls of open matches."""
+"""The ids of calls of open matches begin with this."""
 
 
 def is_open_call(call: str) -> bool:
-    """Return whether a call is that of an open match; calls of games are ids of facts."""
+    """Return whether a call is for an open match; the call of a game has the id of its fact."""
     return call.startswith(OPEN_CALL)
 
 
@@ -35,16 +35,16 @@ class GameEnd(NamedTuple):
 
 
 class SeenCourt(NamedTuple):
-    """A court as the office sees it."""
+    """The state of a court, as the office last heard it."""
 
     heard_ms: int
     """When the court was heard last; 0: never."""
     call: str = ""
     """Id of the call whose match the court has; "": none."""
     begun: bool = False
-    """Whether the match has begun to be played."""
+    """Whether play has begun in this match."""
     ended: GameEnd | None = None
-    """How the match ended; None: it has no official end."""
+    """How the match ended; None: it has no official result."""
     there: bool = False
     """Whether the court answers now."""
     missing: tuple[str, ...] = ()
@@ -69,7 +69,7 @@ def results(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterator[AnyFact
 
 
 def needed(contest: Contest) -> list[Called]:
-    """Return the games at courts that are still the next ones of their matches."""
+    """Return the called games that are still the next games of their matches."""
     following = {
         (match.pairing.id, match.next_game, match.next_seats)
         for view in contest.stages
@@ -82,17 +82,18 @@ def needed(contest: Contest) -> list[Called]:
 def taken_back(
     contest: Contest, seen: Mapping[str, SeenCourt], now_ms: int, since_ms: int = 0
 ) -> Iterator[AnyFact]:
-    """Yield the games that are taken back from their courts.
+    """Yield the facts that take games back from their courts.
 
-    These are games that are not needed any more, because a team has left; games that were moved to
-    another court or a later time; and games of courts that were not heard for `LOST_MS`. A game
-    that has begun stays with a court that is heard: a court that was killed goes on with it.
+    Taken back are games that are no longer needed, for example because a team has left; games that
+    were moved to another court or a later time; and games of courts that were not heard for
+    `LOST_MS`. A game that has begun stays with a court that is heard: a court that was killed goes
+    on with it.
 
     Args:
         contest: the contest.
         seen: the courts.
         now_ms: the time, in milliseconds since 1970, UTC.
-        since_ms: since when the office listens to its courts.
+        since_ms: since when the office has listened to its courts, in milliseconds since 1970, UTC.
     """
     stays = {call.id for call in needed(contest)}
     moves = {move.pairing: move for move in contest.moves}
@@ -118,16 +119,17 @@ def calls(
     least_rest_ms: int,
     held: Collection[tuple[str, int]] = (),
 ) -> list[Called]:
-    """Give the next games to the courts that are free.
+    """Return the calls that give the next games to the free courts.
 
-    An open match that has begun is played to its end; another one goes.
+    A court whose open match has begun is not free. An open match that has not begun makes room for
+    the game.
 
     Args:
         contest: the contest.
         seen: the courts, in the order in which they are filled.
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team.
-        held: games that no court takes, by pairing and number.
+        held: games that a court refused, by pairing and number; they are not called.
     """
     free = [
         name
@@ -146,11 +148,11 @@ def present(seen: Mapping[str, SeenCourt], now_ms: int) -> list[str]:
 
 
 def absent(call: Called, seen: SeenCourt | None, now_ms: int) -> tuple[str, ...]:
-    """Return the teams of a called game that should have come by now, and have not."""
+    """Return the teams of a called game that are late: they should have joined by now."""
     is_late = now_ms - call.at_ms >= _LATE_MS
     return seen.missing if seen is not None and seen.call == call.id and is_late else ()
 
 
 def wanted(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterable[Called]:
-    """Return the calls that their courts do not have yet: the office sends them again."""
+    """Return the running calls that their courts do not have yet, so that the office sends them."""
     return [call for call in contest.running if seen.get(call.court, SeenCourt(0)).call != call.id]

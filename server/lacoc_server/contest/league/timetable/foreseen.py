@@ -1,7 +1,8 @@
 """Every match that is still to come, also those whose teams or draws are not known yet; pure.
 
-A stage that is not drawn has the bracket or the rounds that it will have with the teams that are
-here now. Ids of pairings depend only on the number of teams, so a match can be moved early.
+A stage that is not drawn is shown with the bracket or rounds that it would have with the present
+teams. Ids of pairings depend only on the number of teams, so a match can be moved before its stage
+is drawn.
 """
 
 from collections.abc import Collection, Iterator, Mapping
@@ -25,9 +26,9 @@ class Foreseen(msgspec.Struct, frozen=True, kw_only=True):
 
     match: ContestMatch
     fixture: Phrase
-    """What it is: "Semi-final 1"."""
+    """Name of the match: "Semi-final 1"."""
     who: tuple[Phrase, Phrase]
-    """Who plays: a team, "winner of Semi-final 1", "seed 3"."""
+    """The left and the right side: a team, "winner of Semi-final 1" or "seed 3"."""
 
     @property
     def pairing(self) -> Pairing:
@@ -38,8 +39,8 @@ class Foreseen(msgspec.Struct, frozen=True, kw_only=True):
 def foreseen(contest: Contest, formats: Mapping[str, Format]) -> tuple[Foreseen, ...]:
     """Return the matches that are still to come, in the order in which they are played.
 
-    First those that can be played now, as `playable` has them; not those on a court. A second final
-    of a double knockout is left out, because mostly there is none.
+    First come those that can be played now, in the order of `playable`. Matches on a court are left
+    out. The second final of a double knockout is left out, too, because it is rarely needed.
     """
     whole = msgspec.structs.replace(contest, stages=tuple(_all_stages(contest, formats)))
     drawn = {view.name for view in contest.stages}
@@ -69,13 +70,13 @@ def _foreseen(
 
 
 def _is_to_come(match: ContestMatch) -> bool:
-    """Return whether a match will be played; a place that stays empty makes none of it."""
+    """Return whether a match will be played, as far as is known: not decided, without a bye."""
     conditional = match.pairing.only_if_second_won
     return not (match.decided or conditional or NOBODY in match.teams)
 
 
 def _all_stages(contest: Contest, formats: Mapping[str, Format]) -> Iterator[StageView]:
-    """Yield the drawn stages with all their rounds, then those that are not drawn."""
+    """Yield the drawn stages with all their rounds, then the planned stages as they will be."""
     teams = sum(not team.gone for team in contest.teams)
     places: dict[str, int] = {}
     for view in contest.stages:
@@ -93,7 +94,7 @@ def _all_stages(contest: Contest, formats: Mapping[str, Format]) -> Iterator[Sta
 
 
 def _planned(plan: Planned, teams: int, how: Format) -> StageView:
-    """Return a stage as it will be; a team is named by its place in the seeding."""
+    """Return a planned stage as it will be; its teams are named "1", "2" and so on, by seeding."""
     entries = tuple(str(number) for number in range(1, teams + 1))
     stage = Stage(name=plan.stage, settings=plan.settings, entries=entries)
     rules = StageRules(
@@ -105,7 +106,7 @@ def _planned(plan: Planned, teams: int, how: Format) -> StageView:
 
 
 def _rounds(stage: Stage, rounds: range, teams: int) -> Iterator[ContestMatch]:
-    """Yield the matches of rounds that are drawn later."""
+    """Yield the matches of rounds that are not drawn yet; their teams are not known."""
     for number in rounds:
         for order in range(1, teams // 2 + 1):
             pairing = Pairing(
@@ -132,7 +133,7 @@ def _who(
 
 
 def _from(whole: Contest, view: StageView, source: AnySource) -> Phrase:
-    """Say where the team of a place comes from."""
+    """Say where the team of a place will come from, for example "winner of Semi-final 1"."""
     if not isinstance(source, WinnerOf | LoserOf):
         return say("who.drawn")
     before = next(match for match in view.matches if match.pairing.id == source.pairing)

@@ -12,7 +12,7 @@ from lacoc_server.contest.league.timetable.seeding import by_rank, kept_apart
 
 
 class Assignment(msgspec.Struct, frozen=True, kw_only=True):
-    """A game for a court."""
+    """A game that is given to a court."""
 
     court: str
     pairing: str
@@ -53,7 +53,7 @@ def is_final(match: ContestMatch) -> bool:
 
 
 def waits_for_others(view: StageView) -> bool:
-    """Return whether the final of a stage has to wait for other matches of it."""
+    """Return whether a stage still has undecided matches that must be played before its final."""
     return not all(match.decided or is_final(match) for match in view.matches)
 
 
@@ -66,8 +66,9 @@ def court_of(contest: Contest, match: ContestMatch) -> str:
 def not_before_ms(contest: Contest, match: ContestMatch, now_ms: int) -> int:
     """Return the earliest time of a match, in milliseconds since 1970, UTC; 0: any time.
 
-    A match that has begun goes on without a break of its stage. The rest of teams is not counted.
-    A game that ended in the future did not: the machine's clock was set back since.
+    The break before a stage counts until a game of the stage has ended, and the break before a
+    final until a game of the final has. The rest of teams never counts here. Games with an end
+    later than `now_ms` are ignored: the machine's clock was set back.
     """
     name, plan = stage_of(match.pairing.id), _plan(contest, match)
     before = [view.name for view in contest.stages]
@@ -95,7 +96,7 @@ def assign(
     least_rest_ms: int = 0,
     without: Collection[tuple[str, int]] = (),
 ) -> list[Assignment]:
-    """Give the next games to the free courts.
+    """Return which of the next games goes to which free court.
 
     Args:
         contest: the contest.
@@ -104,7 +105,7 @@ def assign(
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team; games of one match follow each
             other without it.
-        without: games that are not given, by pairing and number.
+        without: games to leave out, by pairing and number.
 
     Returns:
         At most one game for each free court, and for each team.
@@ -143,7 +144,7 @@ def _assigned(
 def rested_ms(contest: Contest, match: ContestMatch, least_rest_ms: int, now_ms: int) -> int:
     """Return when both teams of a match will have rested, in milliseconds since 1970, UTC.
 
-    A game that ended in the future did not: the machine's clock was set back since.
+    Games with an end later than `now_ms` are ignored: the machine's clock was set back.
     """
     ends = (contest.ended_ms.get(team, (match.pairing.id, 0)) for team in match.teams if team)
     return max(
@@ -157,13 +158,13 @@ def rested_ms(contest: Contest, match: ContestMatch, least_rest_ms: int, now_ms:
 
 
 def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | RoundDrawn | None:
-    """Return the next draw that is possible; None: nothing can be drawn now.
+    """Return the fact of the next possible draw; None: nothing can be drawn now.
 
-    Before the first draw, entries are closed.
+    If entries must be closed before that draw, the fact that closes them is returned.
 
     The next round of a stage is drawn when all matches of its earlier rounds are decided. A stage
     that follows another stage is drawn when the other one is over, with the teams that are left.
-    Stages that follow none are drawn one after another.
+    The other stages are drawn one after another, each when all before it are over.
     """
     for view in contest.stages:
         if view.may_draw:
@@ -176,7 +177,7 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
 def waits_for_organiser(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None:
     """Return the draw that only the organiser can make now; None: there is none.
 
-    A stage whose draw was taken back waits too: the organiser says when it is drawn again.
+    A stage whose draw was taken back waits too, whatever its plan says.
     """
     if not (contest.closed and contest.planned):
         return None
@@ -187,7 +188,10 @@ def waits_for_organiser(contest: Contest, formats: Mapping[str, Format]) -> Draw
 
 
 def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None:
-    """Return the draw of the next stage; None: there is none, or its teams are not known yet."""
+    """Return the draw of the next planned stage.
+
+    None: no stage is left, or its teams are not known yet.
+    """
     if not contest.planned:
         return None
     plan = contest.planned[0]
@@ -200,7 +204,7 @@ def _next_stage(contest: Contest, formats: Mapping[str, Format]) -> Drawn | None
 
 
 def _teams(contest: Contest, plan: Planned) -> tuple[str, ...] | None:
-    """Return the teams of a stage by seeding; None: they are not known yet."""
+    """Return the teams of a planned stage by seeding; None: they are not known yet."""
     if any(not view.over for view in contest.stages):
         return None
     here = {team.name for team in contest.teams if not team.gone}

@@ -1,4 +1,4 @@
-"""Who meets first in a stage that is to be drawn, and an order in which fewer meet again; pure."""
+"""Who meets first in a stage that is to be drawn, and how to keep teams apart there; pure."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
@@ -15,23 +15,23 @@ Pairs = tuple[tuple[str, str], ...]
 
 
 class _Apart(NamedTuple):
-    """What keeps teams of a stage apart."""
+    """What `set_apart` needs to keep teams of a stage apart."""
 
     meet: tuple[tuple[int, int], ...]
-    """Places in the seeding, from 0, whose teams surely meet."""
+    """Pairs of places in the seeding, from 0, whose teams are certain to meet."""
     clubs: frozenset[tuple[str, str]]
-    """Each team that has a club, with the club."""
+    """Each team that has a club, with the club; empty: clubs are not kept apart."""
     met: frozenset[frozenset[str]]
-    """Pairs that have met."""
+    """Pairs of teams that met in the stage before; empty: they are not kept apart."""
 
     def clash(self, order: tuple[str, ...]) -> Pairs:
-        """Return the pairs of an order that should not meet first, and do."""
+        """Return the pairs that would meet first with this order, and should not."""
         pairs = ((order[one], order[other]) for one, other in self.meet)
         return tuple(_clashing(pairs, dict(self.clubs), self.met))
 
 
 def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
-    """Return the teams of which a stage takes its own, in the order of its seeding.
+    """Return the teams from which those of a stage are taken, in the order of the seeding.
 
     It is the ranking of the stage that it follows, or the order in which teams entered. Teams that
     have left can be among them.
@@ -43,7 +43,7 @@ def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
 
 
 def first_meetings(plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
-    """Return the pairs that surely meet: in the first round of a bracket, or in a group.
+    """Return the pairs that are certain to meet: in the first round of a bracket, or in a group.
 
     Args:
         plan: the plan of the stage.
@@ -60,7 +60,7 @@ def first_meetings(plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
 
 
 def met_before(contest: Contest, plan: Planned) -> frozenset[frozenset[str]]:
-    """Return the pairs of teams that had a match in the stage that this one follows."""
+    """Return the pairs of teams that had a match in the stage which this stage follows."""
     return frozenset(
         frozenset(team for team in match.teams if team)
         for view in contest.stages
@@ -71,7 +71,7 @@ def met_before(contest: Contest, plan: Planned) -> frozenset[frozenset[str]]:
 
 
 def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
-    """Return the pairs that surely meet, and have met in the stage before."""
+    """Return the pairs that are certain to meet, and have met in the stage before."""
     met = met_before(contest, plan)
     return tuple(pair for pair in first_meetings(plan, how, order) if frozenset(pair) in met)
 
@@ -79,7 +79,7 @@ def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, 
 def kept_apart(
     contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return an order in which fewer of those meet first that the plan keeps apart.
+    """Return an order of teams with fewer first meetings of teams that the plan keeps apart.
 
     These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
     changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
@@ -90,10 +90,10 @@ def kept_apart(
 def moved_apart(
     contest: Contest, plan: Planned, how: Format, entries: tuple[str, ...]
 ) -> dict[str, Phrase]:
-    """Say of each team with another seed than by rank for which pairs it changed its place.
+    """Say for each team whose seed is not its rank which pairs were kept apart by that.
 
-    These are its own; of a team that only made room, all of them.
-    Nothing is said where the plan does not give this order: a lot or the organiser made it, or
+    These are the pairs with the team itself. If it only made room for others, all such pairs are
+    named. The result is empty if the order is not the plan's: a lot or the organiser made it, or
     the ranking was corrected since.
 
     Args:
@@ -133,7 +133,7 @@ def _set_apart(kept: _Apart, order: tuple[str, ...]) -> tuple[str, ...]:
 def _clashing(
     pairs: Iterable[tuple[str, str]], club_of: Mapping[str, str], met: frozenset[frozenset[str]]
 ) -> Iterator[tuple[str, str]]:
-    """Yield each pair once for each reason why it should not meet."""
+    """Yield each pair that should not meet, once for each reason: the club, an earlier match."""
     for one, other in pairs:
         if one in club_of and club_of[one] == club_of.get(other):
             yield one, other

@@ -1,4 +1,4 @@
-"""What happens in a contest, a line for each thing, for the terminal of its organiser; pure."""
+"""Puts what happens in a contest into lines for the terminal of its organiser; pure."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -22,10 +22,10 @@ from lacoc_shared.words import Phrase, say
 
 
 class Ticker:
-    """Says each thing that happens once.
+    """Returns a line for each thing that happens, once.
 
     Args:
-        facts: the facts that are there already; nothing is said of them.
+        facts: the facts that are there already; they give no lines.
     """
 
     def __init__(self, facts: Sequence[AnyFact]) -> None:
@@ -39,7 +39,7 @@ class Ticker:
     def newest(
         self, contest: Contest, facts: Sequence[AnyFact], known: OfficeKnowledge
     ) -> Iterator[Phrase]:
-        """Yield what has happened since the last call.
+        """Yield a line for each thing that has happened since the last call.
 
         Args:
             contest: the contest as it is now.
@@ -81,7 +81,7 @@ class Ticker:
 
 
 def _said(contest: Contest, fact: AnyFact) -> Phrase | None:
-    """Say what a fact means for an organiser; None: nothing new."""
+    """Put a fact into words for the organiser; None: it is a decision, or needs no line."""
     match fact:
         case Closed():
             here = sum(not team.gone for team in contest.teams)

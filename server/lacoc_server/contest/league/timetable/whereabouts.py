@@ -42,22 +42,23 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _LONGEST = 20
-"""A game that seems to have taken this many times its usual length did not."""
+"""A game that seems to have lasted this many times the usual length is ignored: the clock was
+set."""
 _COUNTED = 15
-"""How many of the newest games count for the usual length of a game."""
+"""The usual length of a game is computed from so many of the newest games."""
 _STEP_S = 5
 _MINUTE_MS = 60_000
 _MOMENT_S = 30
-"""What comes sooner is said to come in a moment."""
+"""A match that begins in less than this time is said to begin "in a moment" [s]."""
 
 
 class SeenCourts(NamedTuple):
-    """What is known of the courts."""
+    """The courts as the office sees them, and their addresses."""
 
     seen: Mapping[str, SeenCourt]
-    """In the order in which they are filled."""
+    """The courts by name, in the order in which they are filled."""
     addresses: Mapping[str, str]
-    """Addresses for contestants."""
+    """The courts' addresses for contestants, by name."""
 
 
 class ContestPace(NamedTuple):
@@ -66,16 +67,16 @@ class ContestPace(NamedTuple):
     now_ms: int
     """The time, in milliseconds since 1970, UTC."""
     game_ms: int
-    """Usual time from the call of a game to its result."""
+    """Usual time from the call of a game to its result [ms]."""
     least_rest_ms: int = 0
-    """Shortest time between two matches of a team."""
+    """Shortest time between two matches of a team [ms]."""
 
 
 class OfficeKnowledge(NamedTuple):
     """What the office knows besides the facts, as of its newest look at the courts."""
 
     seen: Mapping[str, SeenCourt]
-    """The courts, in the order in which they are filled."""
+    """The courts by name, in the order in which they are filled."""
     pace: ContestPace
     held: Mapping[tuple[str, int], Phrase]
     """Games that a court refused, by pairing and number, with the reason."""
@@ -86,7 +87,7 @@ class ProbableStart(NamedTuple):
 
     court: str
     at_ms: int
-    """In milliseconds since 1970, UTC."""
+    """Time at which it begins, in milliseconds since 1970, UTC."""
     games_before: int
     """Games that probably begin before it, on all courts."""
 
@@ -94,11 +95,11 @@ class ProbableStart(NamedTuple):
 def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
     """Return how long a game usually takes from its call to its result.
 
-    Games during which the machine's clock was set do not count.
+    Games with an impossible length are ignored: the machine's clock was set during them.
 
     Args:
         facts: the facts of the contest, in their order.
-        otherwise_ms: what to return before the first game has ended.
+        otherwise_ms: what to return before the first game has ended [ms].
     """
     called: dict[tuple[str, int], int] = {}
     lengths: list[int] = []
@@ -115,13 +116,13 @@ def game_ms(facts: Sequence[AnyFact], otherwise_ms: int) -> int:
 def whereabouts(
     contest: Contest, courts: SeenCourts, pace: ContestPace, begins: Mapping[str, ProbableStart]
 ) -> dict[str, Whereabouts]:
-    """Say of each team where it plays, or what it waits for.
+    """Say for each team where it plays, or what it waits for.
 
     Args:
         contest: the contest.
         courts: its courts.
         pace: how fast it goes.
-        begins: when matches begin, by pairing (`starts`).
+        begins: when and where matches probably begin, by pairing, from `starts`.
     """
     calls = {team: call for call in contest.running for team in call.teams}
     coming = _coming(contest)
@@ -146,9 +147,9 @@ def whereabouts(
 
 
 def _news(contest: Contest) -> dict[str, Phrase]:
-    """Say what people decided about a match of each team since its last game; the newest only.
+    """Say for each team the newest decision about one of its matches since its last game.
 
-    A decision that changes nothing is no news, such as one about a team that was substituted since.
+    A decision that has no effect is left out, for example about a team that was replaced since.
     """
     matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
     unused = {one.fact for one in contest.unused}
@@ -163,7 +164,10 @@ def _news(contest: Contest) -> dict[str, Phrase]:
 
 
 def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Whereabouts:
-    """Say where a team plays, if its game was given to a court; the court may not have it yet."""
+    """Say where a team with a called game plays.
+
+    While the court does not have the game yet, say that the team waits for it.
+    """
     view, match = _match(contest, call.pairing)
     opponent = call.teams[call.teams[0] == team]
     about = fixture(contest, view, match, call.game, stands=True)
@@ -244,7 +248,7 @@ def _waits(
 
 
 def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
-    """Say that a team plays no more, with its place in the newest stage that is over for it."""
+    """Say that a team plays no more, with its place in the last stage in which it was."""
     place: Phrase | None = None
     rank, plays = 0, False
     for view in contest.stages:
@@ -273,7 +277,7 @@ def _ended(contest: Contest, team: str, *, over: bool) -> Whereabouts:
 
 
 def _why_gone(contest: Contest, team: str) -> Phrase | None:
-    """Say why a team left the contest, by the newest decision about it; None: by none."""
+    """Say why a team left the contest, by the newest decision about it; None: no decision says."""
     for fact in reversed(contest.decisions):
         match fact:
             case Substituted(team=name) if name == team:
@@ -287,7 +291,7 @@ def _why_gone(contest: Contest, team: str) -> Phrase | None:
 
 
 def _awaits_draw(contest: Contest) -> Phrase:
-    """Say that the next match is not drawn; also if its draw was taken back."""
+    """Say that the next stage is not drawn yet, or that its draw was taken back."""
     drawn = {view.name for view in contest.stages}
     for fact in reversed(contest.decisions):
         if isinstance(fact, Undrawn) and fact.stage not in drawn:
@@ -306,7 +310,7 @@ def _match(contest: Contest, pairing: str) -> tuple[StageView, ContestMatch]:
 
 
 def _coming(contest: Contest) -> dict[str, tuple[StageView, ContestMatch]]:
-    """Find the next match of each team: one to be played now, else one that waits.
+    """Find the next match of each team: one that can be played now, else one that has to wait.
 
     A match waits for an opponent, or as a final for the other matches of its stage.
     """
@@ -326,12 +330,12 @@ def starts(
     """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
     The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
-    gets none. Nobody knows when a pause without an end is over: these are the times if it was over
-    now, for organisers.
+    gets none. During a pause without an end, the times are as if it ended now; only organisers see
+    them.
 
     Args:
         contest: the contest.
-        coming: its matches to come (`foreseen`).
+        coming: its matches that are still to come, from `foreseen`.
         seen: the courts, in the order in which they are filled.
         pace: how fast it goes.
     """
@@ -381,9 +385,9 @@ def starts(
 
 
 def _needed(one: Foreseen, ends: Mapping[str, int]) -> Iterator[str]:
-    """Yield the matches of its stage, to come or on a court, that must end before a match begins.
+    """Yield the pairings of those matches in `ends` that must end before a match begins.
 
-    Of rounds that are drawn one by one, each waits for all earlier ones.
+    If rounds are drawn one by one, each round waits for all earlier ones.
     """
     pairing = one.pairing
     sources = {s.pairing for s in pairing.sources if isinstance(s, WinnerOf | LoserOf)}
@@ -410,7 +414,7 @@ def full_minute(at_ms: int) -> int:
 
 
 def _games(plan: Planned, match: ContestMatch) -> int:
-    """Return how many games a match takes from now on, if whoever leads wins the rest."""
+    """Return how many games a match still takes if the team that leads wins all of them."""
     wins = [sum(game.winner == team for game in match.games) for team in match.teams]
     return max(1, plan.settings.games // 2 + 1 - max(wins))
 
@@ -427,7 +431,7 @@ def may_come(contest: Contest, team: str) -> bool:
 
 
 def _rounded_s(time_ms: int) -> int:
-    """Round up to seconds, in steps so large that an estimate does not change with each look."""
+    """Round up to seconds in coarse steps, so that an estimate does not change at each look."""
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 
@@ -438,7 +442,7 @@ def _away(contest: Contest, courts: SeenCourts, court: str, now_ms: int) -> tupl
 
 
 def _when(about_s: int) -> Phrase:
-    """Say when a match begins."""
+    """Say in words in how many seconds or minutes a match begins."""
     if about_s <= _MOMENT_S:
         return say("when.moment")
     return say("when.minutes", minutes=max(1, round(about_s / 60)))
