@@ -92,6 +92,7 @@ def design(folder: Path, open_page: Open) -> None:
         page = Contestant(open_page, url, viewport=LAPTOP)
         page.page.goto(f"{url}/design#key={key}")
         page.sees("#gait-grid td")
+        page.page.click("#tab-trials")
         page.press("Control+Enter")
         page.sees(".trial-result .tiles")
         page.page.click("#cell-1-4")
@@ -122,13 +123,13 @@ def classroom(folder: Path, open_page: Open) -> None:
             stack.callback(student.close)
             student.until(lambda page=student: page.last(MessageKind.STUDIO).get("present"))
             table = student.sample()
-            student.ask("edit", table=table, sequences=SEQUENCES)
+            student.edits(table, sequences=SEQUENCES)
             for row in range(1, 1 + chance.randint(0, 3)):
                 turned = [angle + chance.choice((0, 0, 5, -10, 15)) for angle in angles(table, row)]
                 rows = [*table["rows"]]
                 rows[row] = {**rows[row], "angles_deg": turned}
                 table = {**table, "rows": rows}
-                student.ask("edit", table=table, sequences=SEQUENCES, by="hand")
+                student.edits(table, sequences=SEQUENCES)
                 student.ask("trial", table=table, sequences=SEQUENCES, keys="2")
             if number in (4, 9):
                 student.ask("hand", up=True)

@@ -103,6 +103,9 @@ def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     expect(desk.find(f"{desk.card('Ada')} .speeds b")).not_to_have_text("–")
     assert desk.number(f"{desk.card('Ada')} .speeds b") > 30
     desk.sees(f"{desk.card('Ada')} svg.feet")
+    # As narrow as one of thirty cards, it still has its figures inside.
+    narrow = "(card) => { card.style.width = '157px'; return card.scrollWidth - card.clientWidth; }"
+    assert desk.find(desk.card("Ada")).evaluate(narrow) == 0
     before = desk.order()
 
     desk.page.hover(desk.card("Ada"))

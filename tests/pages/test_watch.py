@@ -9,7 +9,7 @@ import pytest
 from chromium import OpenPage
 from playwright.sync_api import expect
 from ports import free_port
-from show import STALE, Show, decide, playing, violations
+from show import STALE, Show, covered, decide, playing, violations
 from stand import pixels_of
 from venue import TOKENS, Venue
 
@@ -120,6 +120,7 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".opening .side[data-seat='0'] .ready", "ready")
     left.close()
     show.sees(".third[data-kind=silent]", "The connection to Ants is lost")
+    assert covered(show.page, ".foot", ".third") == []
 
 
 @pytest.mark.long
