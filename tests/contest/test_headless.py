@@ -340,7 +340,7 @@ def test_bad_bots_stop_no_other_game(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
     All other games are played, and each of the three is told by its team and its file.
     """
-    monkeypatch.setattr(time_limit, "MOST", time_limit.Most(5.0, 0.5, 60.0, 60.0))
+    monkeypatch.setattr(time_limit, "MOST", time_limit.Most(5.0, 0.2, 60.0, 60.0))
     file = enter_bad(tmp_path, good=3)
     told: list[str] = []
     with pytest.raises(UserError) as failed:
