@@ -5,7 +5,7 @@ link is a capsule. Its length is measured from hinge to hinge; for the last link
 """
 
 import math
-from itertools import pairwise
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import msgspec
@@ -93,14 +93,21 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         link is as long as its radius, so its shape is a sphere around that hinge.
         """
         points = self.points(root, first, second)
-        shapes = []
-        for level, (start, end) in enumerate(pairwise(points)):
-            near = 0.0 if level == 0 else self.radius_m / self.lengths_m[level]
-            far = 1.0 - self.radius_m / self.lengths_m[level]
-            shapes.append(
-                Capsule(_between(start, end, near), _between(start, end, far), self.radius_m)
-            )
-        return tuple(shapes)
+        return tuple(self.capsule(level, points) for level in range(len(points) - 1))
+
+    def capsule(self, level: int, points: Sequence[Point]) -> Capsule:
+        """Compute the shape of one link.
+
+        Args:
+            level: Root 0, 1st 1, 2nd 2.
+            points: what `points` computes.
+        """
+        start, end = points[level], points[level + 1]
+        part = self.radius_m / self.lengths_m[level]
+        near = 0.0 if level == 0 else part
+        return Capsule(
+            _between(start, end, near), _between(start, end, 1.0 - part), self.radius_m
+        )
 
 
 def _between(start: Point, end: Point, part: float) -> Point:

@@ -14,7 +14,7 @@ from lacoc_process import COMMAND, environment, run_lacoc
 from waiting import LIMIT_S
 
 from lacoc_robots.library import sample_gait_files
-from lacoc_shared.command import installing
+from lacoc_shared.command import cli, installing
 
 pexpect: Any = pytest.importorskip("pexpect")
 
@@ -279,12 +279,18 @@ def _where(court: CourtProcess, changes: dict[str, str]) -> list[str]:
 def test_a_wrong_start_is_one_clear_message(
     quiet_court: CourtProcess,
     tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
     command: list[str],
     changes: dict[str, str],
     expected: str,
 ) -> None:
     """A command with a wrong option prints one error message and exits with 2."""
-    code, said = piped(tmp_path, "", *command, *_where(quiet_court, changes))
+    monkeypatch.chdir(tmp_path)
+    with open(os.devnull) as no_keys:
+        monkeypatch.setattr("sys.stdin", no_keys)
+        code = cli.main([*command, *_where(quiet_court, changes)])
+    said = "".join(capsys.readouterr())
 
     assert code == 2, said
     assert said.count("Error: ") == 1

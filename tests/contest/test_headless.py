@@ -111,7 +111,7 @@ def test_a_record_without_a_result_is_told(tmp_path: Path) -> None:
 def test_a_game_without_an_end_is_refused(tmp_path: Path) -> None:
     """A stage whose games have no time limit is refused before anything is played."""
     file = small_contest.enter(
-        tmp_path, CONTEST + SWISS.replace("duration_s = 4.0", "duration_s = 0")
+        tmp_path, CONTEST + SWISS.replace("duration_s = 2.6", "duration_s = 0")
     )
     with pytest.raises(UserError, match='stage "swiss" has no time limit'):
         small_contest.play(file)
@@ -307,7 +307,7 @@ def enter_bad(folder: Path, good: int) -> Path:
     One hangs, one raises an error, and one presses only keys that nobody has.
     """
     bots = {f"Good {number}": "straight" for number in range(good)}
-    short = ALL_PLAY_ALL.replace("duration_s = 4.0", "duration_s = 1.0")
+    short = ALL_PLAY_ALL.replace("duration_s = 2.6", "duration_s = 1.0")
     file = small_contest.enter(folder, short, bots)
     for team, brain in BAD.items():
         bot = folder / f"{team.lower()}_bot.py"
@@ -340,7 +340,7 @@ def test_bad_bots_stop_no_other_game(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
     All other games are played, and each of the three is told by its team and its file.
     """
-    monkeypatch.setattr(time_limit, "MOST", time_limit.Most(5.0, 0.5, 60.0, 60.0))
+    monkeypatch.setattr(time_limit, "MOST", time_limit.Most(5.0, 0.2, 60.0, 60.0))
     file = enter_bad(tmp_path, good=3)
     told: list[str] = []
     with pytest.raises(UserError) as failed:

@@ -234,7 +234,7 @@ def test_a_game_that_was_voided_in_play_passes(copied: Path) -> None:
     """A game that a referee aborted is void for the office; its record has the score until then."""
     folder = copied.parent / "published"
     abort = Decide("Kim", "the net fell", Abort())
-    facts = at_a_court(folder, with_score(folder), items={180: abort})
+    facts = at_a_court(folder, with_score(folder), items={120: abort})
     result = Record.read(folder / "records" / facts[-1].record).result  # type: ignore[union-attr]
     assert result is not None
     assert (result.official, any(result.scores)) == ("void", True)

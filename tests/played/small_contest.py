@@ -21,7 +21,7 @@ SWISS = """\
 format = "swiss"
 rounds = 2
 arena = "flag-strike"
-settings.match = { duration_s = 4.0, countdown_s = 0.1 }
+settings.match = { duration_s = 2.6, countdown_s = 0.1 }
 settings.game = { clearance_m = 0.05, starts = [[-0.42, -0.22], [-0.42, 0.22]] }
 """
 FINAL = """\

@@ -83,13 +83,12 @@ def steps_of(robot: RobotSpec, sequence: Sequence[Posture]) -> Steps:
     lowest_m = [min(tip.z for tip in feet) for feet in tips]
     legs = range(len(robot.legs))
     under_m = -robot.size_m[2] / 2
-    shanks = [robot.capsules(posture)[JOINTS_PER_LEG - 1 :: JOINTS_PER_LEG] for posture in sequence]
     reaches = [
         [
-            min(one[leg].start.z, one[leg].end.z) - one[leg].radius_m < under_m + _TOUCHES_M
-            for one in shanks
+            min(shank.start.z, shank.end.z) - shank.radius_m < under_m + _TOUCHES_M
+            for shank in (spec.capsule(JOINTS_PER_LEG - 1, placed[leg]) for placed in points)
         ]
-        for leg in legs
+        for leg, spec in enumerate(robot.legs)
     ]
     return Steps(
         [[feet[leg].y for feet in tips] for leg in legs],

@@ -37,9 +37,9 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
     for index in range(model.ngeom):
-        geom = model.geom(index)
-        if geom.rgba[3] == 0:  # walls and probes are invisible
+        if model.geom_rgba[index, 3] == 0:  # walls and probes are invisible
             continue
+        geom = model.geom(index)
         marker, state = marker_of_geom(game, geom.name)
         kind = _TYPES.get(mujoco.mjtGeom(int(geom.type[0])))
         if kind is None:
@@ -102,4 +102,4 @@ def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
 
 
 def _floats(array: Any) -> Any:
-    return tuple(float(value) for value in array)
+    return tuple(array.tolist())

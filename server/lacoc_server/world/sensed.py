@@ -75,7 +75,10 @@ class SensedWorld(World):
         centre_m = np.einsum("slx,sl->lx", at_w_m[:, :, :2], load_n)
         # MuJoCo gives a body's velocity at the robot's centre of mass.
         middle_m, velocity = data.subtree_com[self._root], data.cvel[self._shanks]
-        along_m_s = velocity[:, 3:] + np.cross(velocity[:, :3], at_w_m[-1] - middle_m)
+        turn_x, turn_y, turn_z, *along = velocity.T
+        x_m, y_m, z_m = (at_w_m[-1] - middle_m).T
+        x_m_s = along[0] + (turn_y * z_m - turn_z * y_m)
+        y_m_s = along[1] + (turn_z * x_m - turn_x * z_m)
         # What a motor loses by its own speed never reaches the joint (`lacoc_robots.model`).
         torques = self._torques - self._back_emf * self._speeds
         upright = np.abs(data.geom_xmat[self._geoms, 8])
@@ -86,7 +89,7 @@ class SensedWorld(World):
             power_w=float(np.maximum(0.0, torques * self._speeds).sum(axis=1).mean()),
             contact_w_m=centre_m / np.maximum(whole_n, _NO_FORCE_N)[:, None],
             grip_n=load_n[-1],
-            slip_m_s=np.hypot(along_m_s[:, 0], along_m_s[:, 1]) * (load_n[-1] > 0),
+            slip_m_s=np.hypot(x_m_s, y_m_s) * (load_n[-1] > 0),
             centre_w_m=middle_m[:2].copy(),
             tip_m=data.geom_xpos[self._geoms, 2] - self._halves_m * upright - self._radii_m,
         )

@@ -126,13 +126,11 @@ class KeyForm:
             apart = self.angles_deg - self.partners_deg
             odd[:, levels] += _beyond(apart[:, levels]) / 2
         for first in (0, 1):
-            mates = list(range(first, self.legs, 2))
-            for leg in mates:
-                others = [mate for mate in mates if mate != leg]
-                apart = self.angles_deg[:, :, others] - self.angles_deg[:, :, [leg]]
-                apart = apart - _OFFSET[:, None] * np.median(apart, axis=0)
-                apart = _MATES * _beyond(apart).sum(axis=2) / max(1, len(others))
-                odd[:, levels, leg] += apart[:, levels]
+            mates = self.angles_deg[:, :, first::2]
+            apart = mates[:, :, None, :] - mates[:, :, :, None]  # (postures, 3, leg, its mate)
+            apart -= _OFFSET[:, None, None] * np.median(apart, axis=0)
+            apart = _MATES * _beyond(apart).sum(axis=3) / max(1, mates.shape[2] - 1)
+            odd[:, levels, first::2] += apart[:, levels]
         return odd
 
     @property
