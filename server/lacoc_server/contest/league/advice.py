@@ -3,14 +3,24 @@
 from collections.abc import Iterable
 
 from lacoc_shared.messages import Event
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, faults
+
+_MOST = 20
+"""A court has fewer reasons; a program that only pretends to be one may send any number."""
 
 
 def advice(events: Iterable[Event]) -> tuple[Phrase, ...]:
-    """Return the reasons of a court's newest advice to play a match again; empty: it gave none."""
+    """Return why the court advised to play a match again at last; empty: it did not.
+
+    Only reasons of the health verdict count (`health.*`), with the values that belong to them.
+    """
     reasons: object = ()
     for event in events:
         if event.kind == "advice":
             reasons = event.said.values.get("reasons", ())
     listed = reasons if isinstance(reasons, list | tuple) else ()
-    return tuple(one for one in listed if isinstance(one, Phrase))
+    return tuple(one for one in listed[:_MOST] if isinstance(one, Phrase) and _is_reason(one))
+
+
+def _is_reason(phrase: Phrase) -> bool:
+    return phrase.code.startswith("health.") and not faults(phrase)
