@@ -1,6 +1,7 @@
 """Tests of what people decided, as the sheet of a contest says it."""
 
 from random import Random
+from typing import Any
 
 import pytest
 from chance_event import Event
@@ -14,8 +15,10 @@ from lacoc_server.contest.league.facts import (
     FilesChanged,
     NoShow,
     OfDecision,
+    Planned,
     Replaced,
     Replay,
+    StageSettings,
     Voided,
     Withdrawn,
     new,
@@ -69,6 +72,24 @@ def test_the_game_of_a_longer_match_is_named() -> None:
     cup = Cup("single-knockout", games=3)
     cup.add(Replay, **{**GAME, "game": 2})
     assert said(cup) == ["Semi-final 1, game 2 of 3: t001 and t004 play again"]
+
+
+@pytest.mark.parametrize(
+    ("form", "settings", "pairing", "words"),
+    [
+        ("round-robin", {"groups": 2}, "cup:b1.1", "Group stage, group B, round 1"),
+        ("round-robin", {}, "cup:a2.1", "Round robin, round 2"),
+        ("single-knockout", {}, "cup:w1.2", "Knockout, round 1"),
+    ],
+)
+def test_a_match_whose_draw_was_taken_back_is_named(
+    form: str, settings: dict[str, Any], pairing: str, words: str
+) -> None:
+    """A decision of before is read with stage, group and round, and not with the match's id."""
+    event = Event(8, 1, Random(1))
+    event.add(Planned, stage="cup", format=form, settings=StageSettings(**settings))
+    event.add(NoShow, pairing=pairing, team="t001", reason="why")
+    assert said(event)[-1] == f"{words}: t001 did not come"
 
 
 def test_other_files_are_a_decision_once_entries_are_closed() -> None:

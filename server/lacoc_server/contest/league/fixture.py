@@ -1,5 +1,7 @@
 """Names a match or a game of a contest, as a phrase: "Semi-final 1, game 2 of 3"; pure."""
 
+import re
+
 from lacoc_server.contest.league.contest import Contest, StageView
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.titles import title
@@ -7,7 +9,7 @@ from lacoc_shared.words import Phrase, say
 
 
 def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
-    """Name a match or a game, as `fixture` does; give the pairing's id if it is in no drawn stage.
+    """Name a match or a game, as `fixture` does; one whose draw was taken back by its round.
 
     Args:
         contest: the contest.
@@ -20,7 +22,21 @@ def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
                 if game:
                     return fixture(contest, view, match, game)
                 return match_fixture(contest, view, match)
-    return say("fixture.named", name=pairing)
+    return _undrawn(contest, pairing)
+
+
+def _undrawn(contest: Contest, pairing: str) -> Phrase:
+    """Name a match of a stage that is not drawn now by stage, group and round, as its id has them.
+
+    A match of a stage that is not planned has its id as its name.
+    """
+    stage, _, place = pairing.partition(":")
+    found = re.fullmatch(r"([a-z]*)([0-9]{1,4})\.[0-9]+", place)
+    plan = next((one for one in contest.planned if one.stage == stage), None)
+    if found is None or plan is None:
+        return say("fixture.named", name=pairing)
+    group = found[1].upper() if plan.settings.groups > 1 else None
+    return say("fixture.round", stage=title(contest, stage), group=group, round=int(found[2]))
 
 
 def fixture(
