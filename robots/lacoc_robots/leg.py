@@ -105,9 +105,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         start, end = points[level], points[level + 1]
         part = self.radius_m / self.lengths_m[level]
         near = 0.0 if level == 0 else part
-        return Capsule(
-            _between(start, end, near), _between(start, end, 1.0 - part), self.radius_m
-        )
+        return Capsule(_between(start, end, near), _between(start, end, 1.0 - part), self.radius_m)
 
 
 def _between(start: Point, end: Point, part: float) -> Point:
