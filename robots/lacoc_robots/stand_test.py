@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Collection
-from functools import lru_cache
 
 import mujoco as mj
 import numpy as np
@@ -38,11 +37,8 @@ def try_standing(
     ]
 
 
-@lru_cache(maxsize=64)
 def stand(robot: RobotSpec, posture: Posture) -> Stood:
     """Put a robot on an empty floor as a match does, let it take a posture, and measure it there.
-
-    The result is kept, because teams join again with the same robot, and many bring a sample robot.
 
     Args:
         robot: the robot.

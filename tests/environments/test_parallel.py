@@ -110,7 +110,7 @@ def test_forks_are_equal_to_the_end(env: LacocParallelEnv, tmp_path: Path) -> No
     """
     chance = np.random.default_rng(5)
     new = LacocParallelEnv(env.court.arena.name, settings=SHORT)
-    for number in range(8):
+    for number in range(5):
         env.reset(seed=number)
         play(env, number, int(chance.integers(0, 50)))
         saved = env.save()

@@ -123,7 +123,7 @@ def test_a_seed_chooses_the_seat() -> None:
 @pytest.mark.parametrize("threads", [1, 2])
 def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
     """Each row of a vector environment equals a single one bit for bit, over several episodes."""
-    rows(arena, threads, steps=90, count=3)
+    rows(arena, threads, steps=80, count=2)
 
 
 @pytest.mark.long
