@@ -63,7 +63,7 @@ class WantedMatch(NamedTuple, Generic[T]):
     prepared: T | None
     """The prepared match; None: the court shall wait."""
     ends: bool = False
-    """Whether a match that has begun ends for it."""
+    """Whether the court ends a match that has begun; if False, it only replaces one that has not."""
 
 
 class _OfficeToken(AnyToken):
@@ -165,7 +165,7 @@ class OfficeDesk(Generic[T]):
     ) -> Done | Refusal | None:
         """Offer a match to the court (`wanted`) once it is prepared; return Done once it is open.
 
-        None: it is not open yet.
+        Return None while the match is not open yet.
         """
         if self._call == call:
             return Done()

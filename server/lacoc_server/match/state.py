@@ -303,7 +303,7 @@ class MatchState:
         self.tell_result()
 
     def take_up(self, physics: Physics, make_physics: MakePhysics) -> None:
-        """Continue with other physics, which steps the match from the next beat on.
+        """Replace the physics of the match; the new one steps it from the next beat on.
 
         Args:
             physics: the robots on their field, where they are now.
@@ -363,9 +363,9 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Mark the result as changed, if the match has one: the beat then returns it."""
+        """Mark the result as changed, if the match has one: then the present `Beat` has the result."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:
-        """Mark the sheet as changed: the beat then says so."""
+        """Mark the sheet as changed: then `sheet_changed` is set in the present `Beat`."""
         self.sheet_is_new = True
