@@ -4,7 +4,7 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.seat import No
 
 _IN_VAIN = (No.NO_SUCH_KEY, No.LEVEL_CLOSED)
-"""Reasons that last for the whole match. After an [x] and in a freeze keys are refused too; that is
+"""Reasons that last for the whole match; only such refusals are counted. After an [x] and in a freeze keys are refused too; that is
 part of the game.
 """
 

@@ -1,4 +1,4 @@
-"""What the rules look at, and what they find."""
+"""The trial that the rules of `explain` look at, and the findings that they return."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -34,7 +34,7 @@ class SeenTrial:
     form: KeyForm
     """The table of the measured key."""
     before: tuple[int, Posture] | None = None
-    """Digit and posture [rad] of level A from which the robot came to one of level A."""
+    """If the measured key is of level A: digit and posture [rad] of the key of level A before it."""
 
     @property
     def part(self) -> slice:
