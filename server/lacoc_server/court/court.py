@@ -257,7 +257,7 @@ class Court:
             self._say_health(now_s)
 
     def _gains(self) -> tuple[Gains, ...]:
-        """Ask the game what each robot would gain next; if its code is wrong, the match goes on."""
+        """Ask the game what each robot would gain next; return () if the game's code is wrong."""
         try:
             return self._journal.match.gains()
         except UserError as wrong:
@@ -265,7 +265,7 @@ class Court:
             return ()
 
     def _moves(self) -> tuple[tuple[str, ...], ...]:
-        """Return what each seat's keys do; begin no new trial of a key while two robots may play."""
+        """Return what each seat's keys do; begin no trial of a key while two robots may play."""
         match, trials = self._journal.match, self._key_trials
         if trials is None:
             return ()

@@ -49,7 +49,7 @@ class _WalkedWay:
         self._corner = None
 
     def go(self, centre_m: tuple[float, float]) -> None:
-        """Add the way to the robot's present position, once it is far enough from the last point."""
+        """Add the way to the robot's position, once it is far enough from the last point."""
         step_m = math.dist(self._corner, centre_m) if self._corner else math.inf
         if step_m < _STEP_M:
             return

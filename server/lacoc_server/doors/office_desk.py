@@ -63,7 +63,7 @@ class WantedMatch(NamedTuple, Generic[T]):
     prepared: T | None
     """The prepared match; None: the court shall wait."""
     ends: bool = False
-    """Whether the court ends a match that has begun; if False, it only replaces one that has not."""
+    """Whether to end a match that has begun; if False, only an unbegun match is replaced."""
 
 
 class _OfficeToken(AnyToken):

@@ -200,7 +200,7 @@ class Match(MatchState):
                 self.finish(why)
 
     def _move_to_play(self) -> None:
-        """Enter READY when every seat is ready; go back to the lobby when a seat is no longer ready.
+        """Enter READY when every seat is ready; go back to the lobby when one no longer is.
 
         Without a referee, also begin the countdown. Enter PLAYING at the end of every countdown.
         """

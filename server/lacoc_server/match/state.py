@@ -363,7 +363,7 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Mark the result as changed, if the match has one: then the present `Beat` has the result."""
+        """Mark the result as changed, if there is one: then the present `Beat` has the result."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:

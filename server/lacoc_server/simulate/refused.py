@@ -4,8 +4,8 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.seat import No
 
 _IN_VAIN = (No.NO_SUCH_KEY, No.LEVEL_CLOSED)
-"""Reasons that last for the whole match; only such refusals are counted. After an [x] and in a freeze keys are refused too; that is
-part of the game.
+"""Reasons that last for the whole match; only these refusals are counted. Those after an [x] and in
+a freeze are part of the game.
 """
 
 
@@ -22,7 +22,7 @@ class RefusedKeys:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The number of such keys, by seat."""
+        """Number of keys that were pressed in vain, by seat."""
         return tuple(self._counts)
 
     def see(self, frame: Frame) -> None:

@@ -22,7 +22,7 @@ def forward_key(gait: Gait) -> tuple[Level, int]:
 
     A gait without level B is tried with the last key of level A. A gait with level B is tried with
     `FORWARD`, or with its first key if it has no such key. The key is tried
-    even if its postures are all equal: its author wants to see that.
+    even if it does nothing yet, because its author wants to see that.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]

@@ -52,7 +52,7 @@ class _Limb(NamedTuple):
     body: int
     """Id of the body that the limb begins with."""
     reach_m: float
-    """Upper bound of the distance [m] of its points from the origin of `body`, at all joint angles."""
+    """Upper bound of the distance of its points from the origin of `body`, at all angles [m]."""
 
 
 class _TouchPair(NamedTuple):

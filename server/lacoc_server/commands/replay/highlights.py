@@ -58,7 +58,7 @@ def highlights_command(
 
 
 def _told(source: ForkSource, one: Swing) -> dict[str, Any]:
-    """Return a moment in the form that `lacoc film --moments` reads, with more entries for people."""
+    """Return a moment in the form that `lacoc film --moments` reads, with some more entries."""
     events = _events(source, one)
     return {
         "beat": events[-1].beat if events else one.after.beat,

@@ -45,7 +45,7 @@ class Odds(msgspec.Struct, frozen=True, kw_only=True):
     bots: tuple[str, str]
     """The bots that play the forks, by seat."""
     moments: tuple[MomentOdds, ...]
-    """The moments in order. If the match has a result, its end is the last, with chance 1, 0.5 or 0."""
+    """In order. If the match has a result, the last moment is its end, with chance 1, 0.5 or 0."""
 
 
 class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):

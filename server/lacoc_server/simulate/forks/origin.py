@@ -125,7 +125,7 @@ def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | 
 
 
 def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
-    """Return the messages before a beat, without health, and with the fork's name for the match's."""
+    """Return the messages before a beat, renamed for the fork, without measurements of health."""
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

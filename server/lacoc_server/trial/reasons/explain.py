@@ -123,7 +123,7 @@ def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Yield findings on motion: the robot hardly moves, goes back, turns, slides or goes forward."""
+    """Yield findings on motion: the robot hardly moves, goes back, turns, slides, walks."""
     figures = seen.figures
     if not figures.cycles:
         return

@@ -108,12 +108,12 @@ class KeyForm:
 
     @property
     def paired(self) -> tuple[int, ...]:
-        """The levels at which partners and mates should have equal numbers; in a turn not the roots."""
+        """Levels at which partners and mates should have equal numbers; in a turn not the roots."""
         return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)
 
     @cached_property
     def partners_deg(self) -> Floats:
-        """(postures, 3, legs) the angle of each number's partner: opposite leg, half a cycle later."""
+        """(postures, 3, legs) angle of each number's partner: opposite leg, half a cycle later."""
         return np.roll(self.angles_deg, -self.half, axis=0)[:, :, ::-1]
 
     @cached_property
@@ -150,7 +150,7 @@ class KeyForm:
 
     @cached_property
     def thrust_m2(self) -> list[float]:
-        """For each leg the area [m2] around which its foot moves; positive: it pushes to the goal."""
+        """For each leg the area that its foot encircles [m2]; positive: it pushes to the goal."""
         return [
             area * push
             for area, push in zip(

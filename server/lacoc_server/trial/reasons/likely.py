@@ -27,8 +27,8 @@ class Weighed(NamedTuple):
     """A repair, and how probable it is."""
 
     worth: float
-    """How much less odd the table is, plus the gain in thrust, minus how rare the mistake is; on the
-    scale of `KeyForm.oddness_deg`."""
+    """Decrease of oddness, plus the gain in thrust, minus how rare the mistake is; on the scale of
+    `KeyForm.oddness_deg`."""
     repair: Repair
     is_sure: bool
 
@@ -66,7 +66,7 @@ def likely_mistake(form: KeyForm) -> Repair | None:
 
 
 def _strange_deg(form: KeyForm) -> float:
-    """Return the oddness of a table, plus a little (`_WAY`) for each degree that its joints turn."""
+    """Return the oddness of a table, plus `_WAY` for each degree that its joints turn."""
     angles = form.angles_deg
     way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())
     return form.oddness_deg + _WAY * way_deg

@@ -65,7 +65,7 @@ def _cells(form: KeyForm) -> Iterator[Repair]:
 
 
 def _legs(form: KeyForm) -> Iterator[Repair]:
-    """Yield repairs of a joint or a whole leg: its partner's numbers, the other sign, other times."""
+    """Yield repairs of a joint or a whole leg: partner's numbers, other sign, other times."""
     angles, odd = form.angles_deg, form.odd_deg
     for leg in range(form.legs):
         if odd[:, :, leg].max() <= 0:

@@ -34,7 +34,7 @@ class SeenTrial:
     form: KeyForm
     """The table of the measured key."""
     before: tuple[int, Posture] | None = None
-    """If the measured key is of level A: digit and posture [rad] of the key of level A before it."""
+    """Digit and posture [rad] of the key of level A that came before a measured key of level A."""
 
     @property
     def part(self) -> slice:
