@@ -1,9 +1,9 @@
 """A record's match, judged again on the recorded poses.
 
 In the match, the rules judged exactly the poses that frames carry. So judging them again is exact
-on any machine and needs no physics. The requests of the match to physics are cut into
-sections, which are simulated separately. If a record was cut off and its last beat has no frame, that beat does not count:
-the court answered nobody in it (`journal`).
+on any machine and needs no physics. The requests of the match to physics are cut into sections,
+which are simulated separately. If a record was cut off and its last beat has no frame, that beat
+does not count: the court answered nobody in it (`journal`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -138,7 +138,7 @@ class Workers:
         child.end()
 
     def _do(self, job: _WorkerJob, child: "_WorkerProcess") -> "_WorkerProcess":
-        """Run a job in a process, and set its result; return the process, or a new one if it died."""
+        """Run a job in a process, and set its result; return the process, or its replacement."""
         left = self._again
         while True:
             try:

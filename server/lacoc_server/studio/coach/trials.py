@@ -106,7 +106,7 @@ class Trials:
         return self._scores(tables, _ROUGH_WAY)
 
     def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
-        """Return the figures of walks with the physics of `exact`, or, if `rough`, with that of `rough`.
+        """Return the figures of walks, tried as in `exact`; if `rough` is true, as in `rough`.
 
         Raises:
             Stopped: if the search was stopped.
@@ -115,7 +115,7 @@ class Trials:
         return self._walks(tables, _ROUGH_WAY if rough else _EXACT_WAY)
 
     def spare(self, table: Angles, *, everything: bool) -> None:
-        """Lower the scores of all tables, from now on, that make a shown figure worse than here.
+        """From now on lower the score of each table that makes a shown figure worse than this one.
 
         Args:
             table: the table whose figures are compared.

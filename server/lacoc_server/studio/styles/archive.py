@@ -118,7 +118,7 @@ def is_straight(figures: Figures) -> bool:
 
 
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
-    """Return the rank of a gait in its cell: its score in steps of `_EQUAL_MM_S`, then small changes."""
+    """Return the value by which gaits of a cell compete: rounded score, then the smaller change."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
     return math.floor(goal_score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 
