@@ -129,7 +129,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
 
 
 class _DemoCourt:
-    """A court's process and what it prints.
+    """Reads the lines that a court's process prints.
 
     Raises:
         UserError: if the process ends before the court is open.

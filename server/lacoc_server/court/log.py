@@ -1,4 +1,4 @@
-"""A court's log: every event, and what goes wrong beside the match."""
+"""A court's log: every event of the match, and problems outside of the match."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator

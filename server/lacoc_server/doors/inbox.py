@@ -79,7 +79,7 @@ _NO_SESSION = {
 _Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 
 Later = Callable[[], JoinSeat | Done | Refusal | None]
-"""A request that takes longer than a beat: called in each beat until it gives an answer."""
+"""A function for a request that takes longer than a beat: called each beat until it answers."""
 CheckFiles = Callable[[Join, JoinSeat | None], tuple[Join, tuple[Phrase, ...]] | None]
 """Weighs in the files of a join.
 

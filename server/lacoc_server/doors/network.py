@@ -232,7 +232,7 @@ class CourtNetwork:
         self._scene_bytes = encode(scene)
 
     def publish_health(self, health: Health) -> None:
-        """Send the court's health, from which clients see what did not reach them."""
+        """Send the court's health; it shows clients whether they missed an event or a sheet."""
         self._outbox.send_newest(self._health, encode(health))
 
     @property

@@ -44,8 +44,7 @@ T = TypeVar("T")
 Prepare = Callable[[Assign], Callable[[], T | Refusal | None]]
 """Starts to load an arena and to weigh files in, beside the beats.
 
-It returns a function that is called in each beat until it returns what the court needs to open the
-match, or a refusal.
+It returns a function that is called in each beat until it returns the prepared match, or a refusal.
 """
 CopyPart = Callable[[Copy], Callable[[], Copied | Refusal | None]]
 """Starts to read a part of a record, beside the beats.

@@ -157,7 +157,7 @@ _worlds = Worlds()
 
 
 def _begin() -> None:
-    """Start a process that simulates sections; it leaves Ctrl-C to its parent."""
+    """Make this process, which simulates sections, ignore Ctrl-C: its parent handles it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

@@ -84,7 +84,7 @@ class MatchState:
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.assigned = setup.assigned
-        """What was assigned; None: an older court opened the match."""
+        """The assigned seats and call; None: a court of an older version opened the match."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
@@ -123,7 +123,7 @@ class MatchState:
 
     @property
     def by_office(self) -> bool:
-        """Whether an office says what the court plays."""
+        """Whether the court plays for an office; False if the court was started alone."""
         return self.assigned is not None and not self.assigned.is_alone
 
     @property
@@ -233,7 +233,7 @@ class MatchState:
         )
 
     def result(self) -> Result:
-        """Describe the result as it stands."""
+        """Return the present result; fields that are not decided yet are empty."""
         official = {Phase.OFFICIAL: self.declared or self.winner(), Phase.VOID: "void"}
         return Result(
             match_id=self.setup.match_id,

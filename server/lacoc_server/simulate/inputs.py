@@ -108,7 +108,7 @@ def _play(frame: Frame, players: Sequence[Player], sheet: Sheet) -> Generator[In
 
 
 def _asked(player: Player, bot: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
-    """Call the bot of a player; its error names the team."""
+    """Call a player's bot or brain; an error of it becomes one that names the team."""
     try:
         return bot(*arguments, **named)
     except UserError as error:

@@ -10,7 +10,7 @@ a freeze are part of the game.
 
 
 class RefusedKeys:
-    """Counts the keys of a match that no seat can press in it.
+    """Counts, for each seat, pressed keys that are refused in the whole match.
 
     Args:
         seats: number of seats.

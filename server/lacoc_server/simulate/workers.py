@@ -105,7 +105,7 @@ class Workers:
     def submit(
         self, function: Callable[P, T], *arguments: P.args, **named: P.kwargs
     ) -> "Future[T]":
-        """Run a function of a module in a process.
+        """Run a module's function (no method, no closure) in a process.
 
         Returns:
             A future of the function's result. Its `result` raises `WorkerDied` if the process

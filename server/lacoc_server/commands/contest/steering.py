@@ -1,4 +1,4 @@
-"""Steer the day of a contest: what the office's page decides, from a terminal."""
+"""Commands for the day of a contest: from a terminal, the decisions of the office's page."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, time

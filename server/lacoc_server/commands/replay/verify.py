@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase, render, say
 app = typer.Typer()
 
 NOT_PROVEN = 1
-"""Exit code: the record differs from what its inputs give, or a part of it is lost."""
+"""Exit code: the record differs from the match computed from its inputs, or lost a part."""
 
 
 @app.command(name="verify")

@@ -27,7 +27,7 @@ _VIEW = Struct(f"<{_VIEW_NUMBERS}d")
 
 
 class SetMarker(msgspec.Struct, frozen=True):
-    """A referee's change of a marker, between two ticks; `struck`: it was taken back."""
+    """A referee's change of a marker, between two ticks; if `struck`, it was taken back."""
 
     marker: int
     value: int
@@ -40,9 +40,9 @@ class Note(msgspec.Struct, frozen=True):
     changed: SetMarker | None = None
     """The change of a marker; None: the step is an observation."""
     placed: tuple[Place | None, ...] = ()
-    """For each robot where it was put; empty: all of them walked."""
+    """For each robot the place where it was put, or None; empty: no robot was put anywhere."""
     touched: tuple[tuple[int, ...], ...] = ()
-    """For each robot the markers that it touched; empty: none did."""
+    """For each robot the markers that it touched; empty: no robot touched any."""
     events: tuple[GameEvent, ...] = ()
     """The events that the rules decided from the observation."""
     numbers: tuple[int, ...] = ()
@@ -96,7 +96,7 @@ class History:
         self._judged: Any = None
         """The newest state for which `over` was computed."""
         self._keeps = True
-        """False if no event is ever taken back."""
+        """False after `keep_nothing`: then no event can be taken back."""
         self._step_of: dict[int, int] = {}
         """For each event that can be taken back, the index of its step."""
         self._views = 0
@@ -283,8 +283,8 @@ class History:
     def _forget(self) -> None:
         """Forget all steps, because no event in them can be taken back.
 
-        Judging again will begin with the present state. A practice has no events and may go on for
-        days.
+        Judging again will begin with the present state. So memory does not grow in a practice,
+        which has no such events and may go on for days.
         """
         self._first, self._first_over = self.state, self.over
         if self._count:

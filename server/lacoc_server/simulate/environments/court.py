@@ -98,7 +98,7 @@ class AgentCourt:
             raise UserError(say("environment.no-end", arena=arena.name))
 
     def episode(self) -> Episode:
-        """Return a new episode; it has not begun, but its match has a sheet.
+        """Return a new episode that has not begun; its match already has a sheet.
 
         Raises:
             UserError: if a robot does not stay on its start place, or physics stops.

@@ -126,7 +126,7 @@ class Episode:
         self._seqs = [0] * len(begun.joins)
         self._frame: Frame | None = None
         self.match = self._match(0)
-        """The match that is played; before `begin` one that could be."""
+        """The match of the episode; before `begin` and `load` one that is only for its sheet."""
         begun.begin(self.match, 0)
 
     @property

@@ -26,7 +26,7 @@ _PLACES = ("start_cells", "starts")
 
 
 class Opening(msgspec.Struct, frozen=True):
-    """One way to begin."""
+    """One way in which an episode can begin."""
 
     place: int = 0
     """Index of the start place in the arena file's list; the right robot begins opposite to it."""
