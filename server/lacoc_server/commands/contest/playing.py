@@ -304,6 +304,6 @@ def _show(sheet: "ContestSheet") -> None:
 
 
 def _deciding(table: "Table") -> list[str]:
-    """Return the tie-breaks that decided a rank in the table, in their order, without points."""
+    """Return the tie-breaks (except points and seed) that decided a rank, in the table's order."""
     decided = {row.decided_by for row in table.rows} - {"", "seed", "points"}
     return [code for code in table.tie_breaks if code in decided]
