@@ -51,7 +51,7 @@ from lacoc_shared.words import Phrase, render, say
 app = typer.Typer()
 
 _SHOWN = 10
-"""How many of the numbers that matter are printed."""
+"""Most numbers of the gait that are printed in the table of those that matter."""
 _STAGES = {
     "repair": say("coach.repairs"),
     "matters": say("coach.matters"),
@@ -209,7 +209,7 @@ def _show_others(
 
 @contextmanager
 def _trials(task: Task) -> Iterator[tuple[Trials, Tell]]:
-    """Give trials that run in processes, and a function that shows how far the search is.
+    """Give the object that runs trials in processes, and a function that shows the progress.
 
     Ctrl-C stops the search.
     """
@@ -279,7 +279,7 @@ def _improved_table(
 
 
 def _repaired(one: Repaired, goal: Goal) -> Phrase:
-    """Say which mistake was repaired, and what came of it."""
+    """Say which mistake was repaired, with the speed (or turning speed) before and after."""
     before, after = goal_value(one.before, goal), goal_value(one.after, goal)
     if goal is Goal.FORWARD:
         return say("coach.repaired", why=one.said, before_mm_s=before, after_mm_s=after)

@@ -76,7 +76,7 @@ def variants_table(reply: VariantsReply) -> Table:
 
 
 def named_gaits(reply: MapReply | VariantsReply) -> dict[str, OtherGait]:
-    """Return all gaits that were found, each by the name of its file."""
+    """Return all found gaits, by the name of the file that each is written to."""
     if isinstance(reply, VariantsReply):
         return {f"variant-{number}.txt": one for number, one in enumerate(reply.variants, 1)}
     return {
@@ -130,7 +130,7 @@ def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int)
 
 
 def as_json(reply: MapReply | VariantsReply) -> dict[str, Any]:
-    """Return a reply as plain values."""
+    """Return a reply as plain values that can be written as JSON."""
     if isinstance(reply, VariantsReply):
         gaits = [_gait(one) for one in reply.variants]
         return {"key": reply.key, "variants": gaits, "trials": reply.trials}

@@ -24,12 +24,12 @@ from lacoc_shared.words import say
 app = typer.Typer()
 
 _READY_S = 60
-"""Time for the bots to join and say ready, also on a slow machine."""
+"""Time for the bots to join and say ready, also on a slow machine [s]."""
 _DAY_S = 86_400
 _LOOK_S = 0.5
-"""Time between two checks that all processes are alive."""
+"""Time between two checks that all processes are alive [s]."""
 _END_S = 10
-"""Time that a process has to end after it was asked to."""
+"""Time until a process that was asked to end is killed [s]."""
 
 
 @app.command(name="demo")
@@ -129,7 +129,7 @@ def _open_page(processes: ExitStack, where: Sequence[str], recordings: Path) -> 
 
 
 class _DemoCourt:
-    """A court's process and what it prints.
+    """Reads the lines that a court's process prints.
 
     Raises:
         UserError: if the process ends before the court is open.
@@ -227,7 +227,7 @@ def _ended(process: subprocess.Popen[str]) -> Iterator[subprocess.Popen[str]]:
 
 
 def _lacoc(*words: str, output: int | None = None, token: str = "") -> subprocess.Popen[str]:
-    """Start `lacoc` with these words; a token is passed in the environment.
+    """Start the command `lacoc` with these arguments; pass it a token in the environment.
 
     Other users can't read the environment of a process.
     """

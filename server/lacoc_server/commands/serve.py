@@ -200,14 +200,14 @@ def serve_command(
 
 
 def _alone(arena: str | None, listen: str | None, court: str | None) -> ContestFile:
-    """Return what a contest file would say of a court that is started without one."""
+    """Return a contest file made up for a court that is started without a contest file."""
     entry = ContestCourt(arena=arena or "othello", listen=(endpoint(listen or LOOPBACK),))
     nobody = Secrets(Path())  # nobody asks it: the tokens are of this run alone
     return ContestFile(courts={court or contests.MAIN: entry}, secrets=nobody)
 
 
 def _opening(tokens: Mapping[str, str], left: Unfinished | None) -> dict[str, list[str]]:
-    """Return the hashes of all tokens that open a seat: the new one, and those before a restart."""
+    """Return for each seat the hashes of its new token and of its tokens before a restart."""
     found = {seat: [new_token_hash(token)] for seat, token in tokens.items()}
     if left is not None:
         for one in left.match.assigned.seats if left.match.assigned else ():
@@ -259,7 +259,7 @@ def _lines(court: str, address: str, seats: Mapping[str, str], referee: str) -> 
 
 
 def _stop_on_signal() -> list[int]:
-    """Return a list that fills when somebody asks the process to end."""
+    """Return a list that is empty until SIGINT or SIGTERM asks the process to end."""
     asked: list[int] = []
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda received, _: asked.append(received))

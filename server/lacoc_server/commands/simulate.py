@@ -38,7 +38,7 @@ _LONGEST_NAME = 100
 app = typer.Typer()
 
 _LATE_TICKS = 7
-"""Ticks by which the bots start later each time that two players meet in the same seats."""
+"""Ticks by which bots start later in each further match of the same players in the same seats."""
 _ORDER = ("wins", "fewest-lost", "scored")
 """Codes of the tie-breaks that rank the players."""
 
@@ -178,10 +178,12 @@ def simulate_command(
 
 
 def _teams(names: Mapping[str, str]) -> dict[str, str]:
-    """Return the name of each player in all tables: the team's, if no other player has it.
+    """Return for each player the name in all tables: the team's name, or the player's own words.
+
+    The player's words on the command line are used if two players have the same team's name.
 
     Args:
-        names: the team's name of each player, as on the command line.
+        names: the team's name of each player; players as on the command line.
     """
     often = Counter(map(same_name, names.values()))
     return {
@@ -191,7 +193,7 @@ def _teams(names: Mapping[str, str]) -> dict[str, str]:
 
 
 def _seated(players: Sequence[tuple[Seated, str]], seats: Sequence[str]) -> tuple[Seated, ...]:
-    """Return the players of a match, with names of teams that tell them apart."""
+    """Return the players of a match; those with the same team's name get different names."""
     found: list[Seated] = []
     for (one, name), seat in zip(players, seats, strict=True):
         others = [other.join.team for other in found]

@@ -38,7 +38,10 @@ class RecordArchive:
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: RecordWriter | None) -> None:
-        """Finish a match's record: write its end now; close and pack it on another thread."""
+        """Write the end of a match's record now; close and pack the record on another thread.
+
+        Do nothing if the match has no record.
+        """
         if writer is None:
             return
         writer.end()

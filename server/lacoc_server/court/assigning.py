@@ -33,7 +33,7 @@ class Prepared:
     arena: Arena
     limits: dict[str, float]
     assigned: Assigned
-    """With the robot file of each team filled in."""
+    """What the office assigned, with the robot file of each team filled in."""
 
 
 class Preparation:
@@ -99,11 +99,11 @@ class Preparation:
 def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str]) -> list[JoinSeat]:
     """Return a join for each team that keeps its seat in the next match.
 
-    It has the assigned files; in an open seat it stays as it is.
+    The join has the files that the office assigned; in an open seat the join is unchanged.
 
     Args:
         joins: the joins of the match before.
-        assigned: what is played next.
+        assigned: the next match.
         seats: names of the seats, in the arena's order.
     """
     kept = ((join, assigned.seat(seats[join.seat])) for join in joins)
@@ -117,7 +117,7 @@ def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str])
 def _weighed(seat: AssignedSeat, join_check: JoinCheck) -> AssignedSeat | Refusal:
     """Weigh in the files of a team; return its seat with the robot file filled in.
 
-    An open seat stays as it is: its files are weighed in when somebody joins.
+    An open seat is returned unchanged: its files are weighed in when somebody joins.
     """
     if not seat.team:
         return seat

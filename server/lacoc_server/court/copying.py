@@ -1,7 +1,7 @@
 """Parts of a court's records for the office, which keeps a copy on its own machine.
 
-The office says what it has; the court answers with the next part. So neither has to remember how
-far the other is, and a restart of either loses nothing.
+The office says how much of each file it has; the court answers with the next part. So neither side
+has to remember the progress of the other, and a restart of either loses nothing.
 """
 
 from collections.abc import Callable
@@ -51,12 +51,12 @@ class Copying:
 
 
 def next_part(folder: Path, match_id: str, have: dict[str, int]) -> Copied:
-    """Read the first part of a match's record that somebody does not have yet.
+    """Read the first part of a match's record that the office does not have yet.
 
     Args:
         folder: folder of the records.
         match_id: the match.
-        have: bytes that the other one has, by name of the file.
+        have: number of bytes of each file that the office has, by name of the file.
 
     Raises:
         OSError: if a file can't be read.

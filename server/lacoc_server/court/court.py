@@ -46,7 +46,7 @@ from lacoc_shared.words import Phrase, say
 HEALTH_BEATS = BEATS_PER_S // 2
 """Beats between two health messages: two messages a second."""
 _LEAST_FACTOR = 0.9
-"""A court that is slower than this share of real time does not go before other programs."""
+"""Real-time factor below which the court does not raise its priority over other programs."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,8 @@ class CourtSettings:
     recordings: Path | None
     """Folder of the records; None: no record."""
     assigned: Assigned = WAITING
-    """What is played when no office has assigned anything: nothing, or at a court that was started
-    alone an open match, again and again."""
+    """The match to play before the office assigns one. A court of a contest waits; a court that was
+    started alone repeats an open match."""
     speed: float = 1.0
     """Multiple of real time: at 1 a beat takes 20 ms, at 2 it takes 10 ms."""
     health: HealthLimits = field(default_factory=HealthLimits)
@@ -82,7 +82,7 @@ class Court:
     """Holds one match at a time.
 
     Args:
-        settings: what to play.
+        settings: the settings that the court is started with.
         network: connects the court to others; opened by the caller.
         left: a match that an earlier court left unfinished, to go on with.
         office: the desk of the contest's office, if it has one: the court then plays only what the
@@ -151,8 +151,9 @@ class Court:
     def run(self, stopping: Callable[[], bool]) -> None:
         """Give the match its beats until `stopping` returns True; then finish the record.
 
-        An error in the loop ends the court but not its match: the next start goes on with it. It
-        also goes on with an assigned match that is not over: the office waits for its result.
+        An error in the loop ends the court but not its match: when the court is started again, it
+        goes on with the match. So it does with an assigned match that is not over when the court
+        is stopped, because the office waits for the result.
         """
         pace = self._pace
         self._archive.pack(self.match_id)
@@ -179,9 +180,9 @@ class Court:
         self._archive.close()
 
     def _choose_priority(self) -> None:
-        """Raise this process's priority while it keeps real time; else take turns with others.
+        """Raise this thread's priority while the court keeps real time; else use normal priority.
 
-        A court that is behind always has work: with a high priority it would starve the others.
+        A court that is behind never sleeps: at a high priority it would starve other processes.
         """
         if self._settings.speed <= 1 and self._pace.real_time_factor > _LEAST_FACTOR:
             go_first()
@@ -256,7 +257,7 @@ class Court:
             self._say_health(now_s)
 
     def _gains(self) -> tuple[Gains, ...]:
-        """Ask the game what each robot would gain next; if its code is wrong, the match goes on."""
+        """Ask the game what each robot would gain next; return () if the game's code is wrong."""
         try:
             return self._journal.match.gains()
         except UserError as wrong:
@@ -264,7 +265,7 @@ class Court:
             return ()
 
     def _moves(self) -> tuple[tuple[str, ...], ...]:
-        """Say what each seat's keys do; while two robots may play, no other key is tried."""
+        """Return what each seat's keys do; begin no trial of a key while two robots may play."""
         match, trials = self._journal.match, self._key_trials
         if trials is None:
             return ()
@@ -288,7 +289,10 @@ class Court:
 
     @property
     def _assigned(self) -> Assigned:
-        """What is assigned; a court that was started alone takes its newest tokens, too."""
+        """What this match was assigned; at a court that was started alone, its present settings.
+
+        After a restart these have new tokens, which the interrupted match does not have.
+        """
         assigned, own = self._journal.match.assigned, self._settings.assigned
         return own if assigned is None or assigned.is_alone else assigned
 
@@ -298,11 +302,11 @@ class Court:
 
     @property
     def _may_open(self) -> bool:
-        """Whether the office wants another match, and this one is over."""
+        """Whether the next match may open: the office wants one, and the present one is over."""
         return self._wanted is not None and self._journal.match.is_over
 
     def _follow(self) -> list[Input]:
-        """Return the court's own inputs that follow a recorded beat: decisions, or its advice."""
+        """Return the court's own inputs for the next beat: decisions, or advice to play again."""
         match, before = self._journal.match, self._trouble
         wanted = self._wanted
         if wanted is not None and not match.is_over and (wanted.ends or not match.has_begun):

@@ -23,12 +23,12 @@ from lacoc_shared.words import Phrase, say
 _LEAST_FACTOR = 1e-4
 """Smallest real-time factor that is used; it avoids a division by zero."""
 _STEP_M = 0.01
-"""A body sways with each step, so its way is measured between points that far apart [m]."""
+"""Shortest straight piece of a robot's way that is counted [m], because a body sways in place."""
 _PUT_M = 0.05
-"""No robot goes so far in a beat [m]."""
+"""A robot this far from its last counted point did not walk there: it was put there [m]."""
 _CARRIED = 2
-"""Most commands above ten in a second that count for the next second: with jitter one second has 11
-repeats and the next 9.
+"""Most surplus commands of a second (more than the 10 repeats) that are counted in the next one:
+with jitter, one second has 11 repeats and the next has 9.
 """
 
 
@@ -42,14 +42,14 @@ class _WalkedWay:
     def __init__(self, walked_m: float) -> None:
         self.walked_m = walked_m
         self._corner: tuple[float, float] | None = None
-        """Where the last step ended; None: not known."""
+        """The last counted point of the way [m]; None: there is none since the way was paused."""
 
     def pause(self) -> None:
-        """Count nothing from here to where the robot is next."""
+        """Do not count the way from here to the robot's next position."""
         self._corner = None
 
     def go(self, centre_m: tuple[float, float]) -> None:
-        """Take in where the robot is now."""
+        """Add the way to the robot's position, once it is far enough from the last point."""
         step_m = math.dist(self._corner, centre_m) if self._corner else math.inf
         if step_m < _STEP_M:
             return
@@ -80,7 +80,7 @@ class _LinkCounts:
         self._heard: int | None = None
         """Valid commands counted when this second began; None: no second of PLAYING has begun."""
         self._counted = 0
-        """Beats of this second so far."""
+        """Number of beats since this second began."""
         self._carried = 0
 
     def count(self, silent: bool, heard: int) -> None:
@@ -105,7 +105,7 @@ class _LinkCounts:
             self._heard, self._counted = heard, 0
 
     def pause(self) -> None:
-        """Count nothing until the next beat of PLAYING."""
+        """Drop the unfinished second; count again from the next beat of PLAYING."""
         self._heard = None
 
 
@@ -165,8 +165,8 @@ class MatchHealth:
         """Count a beat and the outcomes of its inputs.
 
         Returns:
-            The verdict when the record needs one: every second of PLAYING, and with each result.
-            Otherwise None.
+            The verdict, if the record gets one now: in every second of PLAYING, and in a beat with
+            a result. Otherwise None.
         """
         self._count(inputs, beat)
         playing = beat.frame.phase == Phase.PLAYING
@@ -232,12 +232,12 @@ class MatchHealth:
 
 
 def _key_name(item: KeySeat) -> str:
-    """Name a key as `LinkVerdict.keys` does."""
+    """Return a key's name in `LinkVerdict.keys`: "x", or level and digit, such as "A2"."""
     return "x" if item.key == RESTART_KEY else f"{'AB'[item.level]}{item.key}"
 
 
 def advice(verdict: HealthVerdict, limits: HealthLimits) -> Iterator[Phrase]:
-    """List every limit of the contest that the match exceeded."""
+    """Yield a sentence for each limit of the contest that the match exceeded."""
     if verdict.real_time_factor < limits.real_time_factor:
         yield say(
             "health.real-time", factor=verdict.real_time_factor, least=limits.real_time_factor

@@ -21,9 +21,9 @@ class _RobotTrials(NamedTuple):
     """The trials of one robot's keys."""
 
     found: list[Future[str]]
-    """What each key does, from key 0 on; the last one may not be done yet."""
+    """What each key does, in the order of the keys; the last trial may still run."""
     courses: list[Course]
-    """The floor, once it is compiled."""
+    """Empty, or the compiled floor on which the trials run."""
 
 
 class KeyTrials:
@@ -36,10 +36,10 @@ class KeyTrials:
     def __init__(self, aside: Callable[[Callable[[], str]], Future[str]]) -> None:
         self._aside = aside
         self._tried: dict[object, _RobotTrials] = {}
-        """By the files of robot and gait; the newest last."""
+        """The trials by the files of robot and gait; those asked for last are at the end."""
 
     def __call__(self, seat: Seat, may_begin: bool) -> tuple[str, ...]:
-        """Return what each key of a seat does, as far as it is known: names of `move.*`.
+        """Return what each key of a seat does (names of `move.*`), up to the first untried key.
 
         Args:
             seat: the seat.

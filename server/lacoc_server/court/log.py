@@ -1,4 +1,4 @@
-"""A court's log: every event, and what goes wrong beside the match."""
+"""A court's log: every event of the match, and problems outside of the match."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator
@@ -82,7 +82,7 @@ class CourtLog:
             _write(self._log.warning, trouble, match_id=match_id, kind="record")
 
     def rules(self, match_id: str, wrong: Phrase) -> None:
-        """Log once what is wrong with the code of the game, beside what it judges."""
+        """Log what is wrong with the code of the game, unless the last such line says the same."""
         if wrong != self._wrong:
             self._wrong = wrong
             _write(self._log.warning, wrong, match_id=match_id, kind="rules")
@@ -94,12 +94,15 @@ class CourtLog:
 
 
 def _write(write: Callable[..., object], said: Phrase, **fields: object) -> None:
-    """Write a line: the sentence for a person, the code for a program."""
+    """Write a line with the sentence for people and its code for programs."""
     write(render(said), code=said.code, **fields)
 
 
 def _grown(now: Counter[_Refused], before: Counter[_Refused]) -> Counter[_Refused]:
-    """Return by how much counts have grown; a smaller count has begun again, for another team."""
+    """Return by how much each count has grown.
+
+    A count that became smaller was set to 0 for another team, so it is taken as it is.
+    """
     return now - Counter({which: count for which, count in before.items() if now[which] >= count})
 
 

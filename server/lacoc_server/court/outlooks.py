@@ -30,7 +30,7 @@ class Outlooks:
     def __call__(self, request: OutlookRequest) -> Callable[[], Seen | None]:
         """Begin to play a copy of the match; the returned function returns None until it is done.
 
-        Called between two beats, because only then the match is whole.
+        Call it between two beats: during a beat the state of the match is incomplete.
         """
         setup, folder, saved = self._match.setup, self._match.arena.folder, self._match.save()
 

@@ -49,7 +49,7 @@ class Pace:
 
     @property
     def real_time_factor(self) -> float:
-        """Speed of the last 250 beats divided by the wanted speed; 1 is on time."""
+        """Speed of the last 250 beats divided by the wanted speed; 1: the court is on time."""
         if len(self._starts_s) < 2:
             return 1.0
         took_s = self._starts_s[-1] - self._starts_s[0]

@@ -15,21 +15,21 @@ _LOOK_S = 1.0
 
 
 class Renewal:
-    """Looks at the files of a certificate beside the beats; used as a context manager.
+    """Watches the files of a certificate on a thread beside the beats; used as a context manager.
 
     Args:
-        pair: the files.
+        pair: the files of certificate and key.
         court: the court's name, for its log.
 
     Raises:
-        UserError: if they can't be used.
+        UserError: if these files can't be used.
     """
 
     def __init__(self, pair: Pair, court: str) -> None:
         self.is_due = False
         """Whether the court must be started again to use its newest certificate.
 
-        A court that a person started goes on: nobody would start it again.
+        It stays False at a court that a person started, because nobody would start it again.
         """
         self._certificate = Certificate(pair)
         self._log = log.get(court=court)

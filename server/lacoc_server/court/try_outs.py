@@ -1,7 +1,7 @@
-"""Lets players try their keys in the lobby: the own robot walks alone, beside the beats.
+"""Lets players try their keys in the lobby: a player's robot walks alone, beside the beats.
 
-A page asks with all keys since its try-out began. The same keys give the same walk, so a question
-needs nothing that was said before; what is kept only saves time. Try-outs are no part of the match,
+Each request of a page has all keys since its try-out began. The same keys give the same walk, so
+no request needs an earlier one; the kept states only save time. Try-outs are no part of the match,
 and no record has them.
 """
 
@@ -22,7 +22,7 @@ from lacoc_shared.words import say
 EVERY_TICKS = 2
 """Ticks from one picture to the next."""
 _KEPT_TICKS = 25
-"""Ticks from one kept state to the next: a longer walk goes on from the last one."""
+"""Ticks between two kept states: the next request goes on from a kept state, not from the start."""
 
 _Tried = TryOutReply | Refusal
 
@@ -67,7 +67,7 @@ class _LoneRobot:
         Args:
             keys: all keys since the beginning.
             first: tick of the first picture.
-            until: no picture is later.
+            until: tick at which the walk ends; no picture is later.
 
         Returns:
             The pictures, fewer than were asked for if physics stopped.
@@ -101,7 +101,7 @@ class _SeatedRobot(NamedTuple):
 
     entry: Entry
     made: list[_LoneRobot]
-    """It, once it was asked for."""
+    """Empty, or the robot on a field of its own, made at the first request."""
 
 
 class TryOuts:
@@ -115,7 +115,7 @@ class TryOuts:
         self._aside = aside
         self._match: Match
         self._robots: dict[int, _SeatedRobot] = {}
-        """By seat."""
+        """The robots that were asked for, by index of the seat."""
 
     def hold(self, match: Match) -> None:
         """Take note of the open match; outside of the lobby no robot is kept."""
@@ -160,7 +160,7 @@ class TryOuts:
 
 
 def _why_not(entry: Entry, levels: Sequence[Level], keys: Sequence[TriedKey]) -> No:
-    """Return why a match would refuse one of the keys; `No.NONE`: it would take them."""
+    """Return why a match would refuse one of the keys; `No.NONE` if it would accept all."""
     if any(key.level not in levels for key in keys):
         return No.LEVEL_CLOSED
     gait = entry.gait

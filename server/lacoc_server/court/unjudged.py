@@ -24,7 +24,8 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
     Args:
         match: a match that begins when its seats are ready.
         held: returns for each seat whether a session holds it. After a restart of the court this is
-            False until the controller has joined again, though the seat is not silent yet.
+            False until the controller has joined again, even while the seat does not yet count as
+            silent.
     """
     if match.phase is Phase.FINISHED:
         return [_decide(Official())]
@@ -43,9 +44,9 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
 
 
 def _put_back(match: Match) -> list[Input]:
-    """Return decisions that put back the robots that stopped physics; none if it goes on.
+    """Return decisions that restart the robots with which physics failed; none if it did not fail.
 
-    Without them physics would stop again.
+    Without these decisions physics would fail again after the match resumes.
     """
     if match.fault is None:
         return []

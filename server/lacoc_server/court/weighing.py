@@ -76,7 +76,7 @@ class Weighing:
         return None if mistakes is None else (whole, notes)
 
     def aside(self, do: Callable[[], T]) -> "Future[T]":
-        """Call a function on the thread of the stand tests, after the tests that wait there."""
+        """Call a function on the thread of the stand tests, after all that wait there already."""
         return self._worker.submit(do)
 
     def _tried(self, key: object, test: Callable[[], list[Mistake]]) -> list[Mistake] | None:

@@ -41,7 +41,7 @@ class DecisionDesk:
         """Number of refusals by `Why`."""
 
     def enter(self, payload: bytes) -> Done | Refusal:
-        """Check the token of a referee who enters and decides nothing yet.
+        """Check the token of a referee who only enters, without a decision.
 
         Args:
             payload: should be an `Enter`.

@@ -55,8 +55,8 @@ COMMANDS_HZ = 200.0
 keys, a bot 60 in all.
 """
 SEQ_JUMP_MAX = 2**16
-"""Most numbers that a command may skip. With a bound, no command can use up the numbers of a seat;
-this one covers 20 minutes of keys that never arrived.
+"""Most sequence numbers that a command may skip. Without a bound, one command could use up all
+numbers of a seat. This bound covers 20 minutes of keys that never arrived.
 """
 NAME_MAX = 24
 FILE_NAME_MAX = 100
@@ -79,7 +79,7 @@ _NO_SESSION = {
 _Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 
 Later = Callable[[], JoinSeat | Done | Refusal | None]
-"""A request that takes longer than a beat: called in each beat until it gives an answer."""
+"""A function for a request that takes longer than a beat: called each beat until it answers."""
 CheckFiles = Callable[[Join, JoinSeat | None], tuple[Join, tuple[Phrase, ...]] | None]
 """Weighs in the files of a join.
 
@@ -261,7 +261,7 @@ class Inbox:
     def _own_name(self, seat: _SeatDoor, name: str) -> str:
         """Add the seat to a team's name if the team in another seat has a name that looks like it.
 
-        Else no sentence about one of them would say which one it is about.
+        Otherwise readers could not tell the two teams apart in events and on pages.
         """
         seat.wanted = name
         held = [join.team if join is not None else "" for join in self._held]
@@ -410,7 +410,7 @@ class Inbox:
     def _own(self, seat: _SeatDoor, payloads: Sequence[bytes]) -> list[Command]:
         """Return the newest commands that the seat's holder sealed, the oldest of them first.
 
-        Messages of others use up nothing of the seat's allowance.
+        Messages from other senders do not count towards `COMMANDS_HZ`.
         """
         allowed = seat.commands.left(self._now_s)
         own: list[Command] = []
@@ -497,8 +497,8 @@ class Inbox:
     def _presence(self, seat: _SeatDoor, is_silent: bool) -> list[Input]:
         """Return the input that corrects the match if it is wrong about a seat's silence.
 
-        `is_silent` is what the match believes. A new match, or one that goes on after a restart of
-        the court, may believe the opposite of what the inbox knows.
+        `is_silent` is the seat's state in the match. In a new match, or in one that goes on after a
+        restart of the court, it may be the opposite of what the inbox has measured.
         """
         if not seat.joined:
             return []

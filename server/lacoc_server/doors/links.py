@@ -27,8 +27,8 @@ CHANGE_BEATS = 3 * BEATS_PER_S
 LOWER_BEATS = 2
 """Smallest step down of the common delay [beats]: a delay that wavers is worse than a long one."""
 TRUST_S = 2 * BEAT_S
-"""Added to the p95 of a seat's round trips: no command is believed to have taken longer than the
-sum."""
+"""Added to the p95 of a seat's round trips [s]: a command whose frame was sent longer ago than the
+sum is treated as an answer to a newer frame."""
 
 
 _NONE = (0, 0)
@@ -104,7 +104,7 @@ class Links:
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:
-        """Note that a beat of a match begins."""
+        """Note that a beat of a match begins; when it is time, measure links and set the delay."""
         self._match, self._beat = match, beat
         self._tick += 1
         self._begun_s.append(now_s)
@@ -126,9 +126,9 @@ class Links:
         """Measure a round trip, if a command names a newer frame than all commands before it.
 
         Returns:
-            Whether the command proves that its sender is there. It does if it names a newer frame
-            than all commands before it, or the newest of their frames while that frame is recent.
-            So an overheard command is soon worthless.
+            Whether the command proves that its sender is connected. It does if it names a newer
+            frame than all commands before it, or again the newest frame that was named, while that
+            frame is recent. So a recorded command that somebody sends again soon proves nothing.
         """
         link, seen = self._links[seat], (command.match, command.seen)
         if seen <= link.newest:
@@ -141,7 +141,7 @@ class Links:
         return True
 
     def hold(self, seat: int, command: Command) -> None:
-        """Take in a new key; `release` returns it when it takes effect."""
+        """Hold a new key until it takes effect; `release` then returns it."""
         link, now_s = self._links[seat], self._begun_s[-1]
         frame = self._seen(command)
         upon = frame or (self._frames[-1] if self._frames else _SentFrame(now_s, 0.0))

@@ -49,7 +49,7 @@ _Told = Done | Copied | Whereabouts | Outlook | TryOutReply
 """Answers that do not concern the match."""
 _Judged = Input | _Told | Refusal
 _Later = Callable[[], _Judged | None]
-"""A function that is called in each beat until it returns what became of a request."""
+"""A function that is called in each beat until it returns the outcome of a request."""
 _Judge = Callable[[Request], _Judged | _Later]
 
 LookAhead = Callable[[OutlookRequest], Callable[[], Outlook | Refusal | None]]
@@ -61,7 +61,7 @@ It returns a function that is called in each beat until it returns the outlook, 
 TryOut = Callable[[int, TryOutRequest], Refusal | Callable[[], TryOutReply | Refusal | None]]
 """Lets the robot of a seat walk alone, beside the beats.
 
-It returns a refusal, or a function that is called in each beat until it returns what became of it.
+It returns a refusal, or a function that is called in each beat until it returns the reply.
 """
 
 
@@ -232,7 +232,7 @@ class CourtNetwork:
         self._scene_bytes = encode(scene)
 
     def publish_health(self, health: Health) -> None:
-        """Send the court's health, from which clients see what did not reach them."""
+        """Send the court's health; it shows clients whether they missed an event or a sheet."""
         self._outbox.send_newest(self._health, encode(health))
 
     @property
@@ -260,7 +260,7 @@ class CourtNetwork:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """Number of refusals that belong to no seat, by `Why`."""
+        """Number of refused messages that were not for a seat, by `Why`."""
         refused = self._decision_desk.refused + self._team_desk.refused
         if self._office_desk is not None:
             refused = refused + self._office_desk.refused

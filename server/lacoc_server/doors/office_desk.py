@@ -44,8 +44,7 @@ T = TypeVar("T")
 Prepare = Callable[[Assign], Callable[[], T | Refusal | None]]
 """Starts to load an arena and to weigh files in, beside the beats.
 
-It returns a function that is called in each beat until it returns what the court needs to open the
-match, or a refusal.
+It returns a function that is called in each beat until it returns the prepared match, or a refusal.
 """
 CopyPart = Callable[[Copy], Callable[[], Copied | Refusal | None]]
 """Starts to read a part of a record, beside the beats.
@@ -63,7 +62,7 @@ class WantedMatch(NamedTuple, Generic[T]):
     prepared: T | None
     """The prepared match; None: the court shall wait."""
     ends: bool = False
-    """Whether a match that has begun ends for it."""
+    """Whether to end a match that has begun; if False, only an unbegun match is replaced."""
 
 
 class _OfficeToken(AnyToken):
@@ -165,7 +164,7 @@ class OfficeDesk(Generic[T]):
     ) -> Done | Refusal | None:
         """Offer a match to the court (`wanted`) once it is prepared; return Done once it is open.
 
-        None: it is not open yet.
+        Return None while the match is not open yet.
         """
         if self._call == call:
             return Done()

@@ -18,15 +18,15 @@ class Openings:
 
     def __init__(self) -> None:
         self._assigned = self._before = WAITING
-        """What is assigned, and what was before: its teams are told more than that a token is
-        wrong."""
+        """The assigned match, and the one before it. A team of the match before is told that its
+        match is over, not that its token is wrong."""
 
     def admit(self, assigned: Assigned) -> None:
-        """Take what is assigned."""
+        """Take the tokens of a newly assigned match in place of those of the match before."""
         self._assigned, self._before = assigned, self._assigned
 
     def opened(self, seat: str, token: str) -> tuple[AssignedSeat, str] | None:
-        """Return a seat that a token opens, and the token's hash; None: it does not open it."""
+        """Return the assigned seat and the token's hash if the token opens the seat, else None."""
         assigned = self._assigned.seat(seat)
         token_hash = None if assigned is None else _opening(token, assigned.token_hashes)
         return None if assigned is None or token_hash is None else (assigned, token_hash)

@@ -45,7 +45,7 @@ class _SeatHolder:
     seat: int
     secret: bytes
     newest: dict[str, int] = field(default_factory=dict)
-    """Sequence number of the newest request, by `of` in `Sessions.is_next`."""
+    """Sequence number of the newest request, for each kind of request (`of` in `is_next`)."""
 
 
 class Sessions:
@@ -102,7 +102,7 @@ class Sessions:
         Args:
             number: number of a session that holds a seat.
             seq: sequence number of a request whose seal is proven.
-            of: what it is compared with: requests of another kind may overtake these.
+            of: the kind of the request; only requests of the same kind are compared.
 
         Returns:
             Whether it was newer.

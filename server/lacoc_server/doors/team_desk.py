@@ -21,8 +21,8 @@ class TeamDesk:
     """Keeps what the office told last, and shows each asker its own part of it.
 
     Args:
-        teams: what is known from the beginning, by the hash of the token; None: the office has to
-            tell it.
+        teams: where each team plays, by the hash of its token; None: nothing is known until the
+            office tells it.
     """
 
     def __init__(self, teams: Mapping[str, Whereabouts] | None = None) -> None:
@@ -39,7 +39,7 @@ class TeamDesk:
         self._salts = tuple({bytes.fromhex(one.partition("$")[0]) for one in teams})
 
     def where(self, payload: bytes) -> Whereabouts | Refusal:
-        """Answer a team.
+        """Answer a team that asks where it plays.
 
         Args:
             payload: should be a `Where`.
@@ -66,11 +66,11 @@ class TeamDesk:
 
 
 def alone(court: str, assigned: Assigned) -> dict[str, Whereabouts] | None:
-    """Return where the open seats of a court are that was started alone; None: it was not.
+    """Return where the open seats are, at a court that was started alone; at another court None.
 
     Args:
         court: the court's name.
-        assigned: what the court assigns itself.
+        assigned: the match that the court opens without an office.
     """
     if not assigned.is_alone:
         return None

@@ -98,7 +98,7 @@ class Journal:
         return beat, encoded
 
     def flush(self) -> None:
-        """Write to the file what still waits in memory.
+        """Write all messages that still wait in memory to the file.
 
         Raises:
             UserError: if the disk refuses it.

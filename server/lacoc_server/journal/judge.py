@@ -1,9 +1,9 @@
 """A record's match, judged again on the recorded poses.
 
-The rules judged exactly the poses that frames carry. So judging them again is exact on any machine
-and needs no physics. What the match asked of physics is cut into sections, which are simulated
-separately. If a record was cut off and its last beat has no frame, that beat does not count:
-the court answered nobody in it (`journal`).
+In the match, the rules judged exactly the poses that frames carry. So judging them again is exact
+on any machine and needs no physics. The requests of the match to physics are cut into sections,
+which are simulated separately. If a record was cut off and its last beat has no frame, that beat
+does not count: the court answered nobody in it (`journal`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -151,7 +151,7 @@ class Judge:
     """Judges a record's match again.
 
     Args:
-        record: what to judge.
+        record: the record to judge.
         folder: folder of its arena, if the arena is not installed.
         snapshots: snapshots by beat, at which sections begin and end.
 
@@ -170,8 +170,8 @@ class Judge:
         self.difference: Difference | None = None
         """The first difference, at which judging stops; None: none was found so far."""
         self.other_model: Difference | None = None
-        """Where this machine first builds a model with other bits than the recorded one; None:
-        nowhere so far.
+        """The first beat in which this machine builds a model whose bits differ from the recorded
+        model; None: no model differed so far.
         """
         self.beats = self.frames = 0
         """Number of beats judged, and of frames compared."""
@@ -220,7 +220,7 @@ class Judge:
             yield self.section
 
     def _judge(self, number: int) -> list[str]:
-        """Judge one beat; return the names of what differs from the record."""
+        """Judge one beat; return the names of its differences from the record (`differs.*`)."""
         record = self._record
         self._beat = number
         with fits_together(record):
@@ -263,8 +263,8 @@ class Judge:
         The numbers of two such models may differ in their last bits.
 
         Returns:
-            The recorded scene and the recorded hash of the model if they differ in this way, else
-            (None, None). Either is also None if the beat did not record it.
+            The recorded scene and the recorded hash of the model if another kind of machine made
+            them, else (None, None). Either is also None if the beat did not record it.
         """
         beat = max(0, self._beat)
         made_by = header_at(self._record, beat).arithmetic.get("model")
@@ -281,7 +281,7 @@ class Judge:
         return scene, str(models[0]) if models else None
 
     def _differences(self, number: int, beat: Beat) -> Iterator[str]:
-        """Name what differs between a judged beat and its record."""
+        """Yield the names of the differences between a judged beat and its record."""
         record, match = self._record, self.match
         recorded = self._frames.get(number)
         events = self._events.pop(number, [])
@@ -310,7 +310,7 @@ class Judge:
         self._result = beat.result or self._result
 
     def _differs_at_the_end(self, last: int) -> Iterator[str]:
-        """Name what differs between the whole judged match and its record."""
+        """Yield the names of the differences between the whole judged match and its record."""
         record = self._record
         if not _same_result(record, self._result, last):
             yield "result"
@@ -356,7 +356,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
     """Return whether two sheets are equal, apart from the versions of software and protocol.
 
-    Sheets of earlier versions do not say the rule.
+    Sheets of earlier versions have no `rule`; it is then not compared.
     """
     if recorded is None:
         return False

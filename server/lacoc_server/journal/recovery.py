@@ -21,8 +21,8 @@ from lacoc_shared.words import Phrase, say
 
 """Phases in which a court halts its match after a restart, and when its disk fails or recovers."""
 _OPENING_BYTES = ASSIGN_MAX_BYTES + (1 << 14)
-"""A file smaller than this [bytes] that holds no match is skipped: its court was killed while it
-opened the match. A header has the files of an assigned match.
+"""Size of a file [bytes] below which a file without a header is skipped: its court was killed while
+it opened the match. The bound is that large because a header has the files of both teams.
 """
 
 
@@ -36,7 +36,7 @@ class Unfinished:
     events: tuple[Event, ...]
     """Events to publish again: the court's list of them was lost."""
     last_seqs: dict[str, int]
-    """Newest sequence number in the record, by seat; a seat goes on after it."""
+    """Newest sequence number in the record, by seat; newer commands must have larger numbers."""
     token_hashes: dict[str, str]
     """Hash of the token of each held seat, by seat."""
     health: HealthVerdict | None
@@ -48,7 +48,7 @@ class Unfinished:
     the same bits.
     """
     is_recorded: bool = False
-    """True: the match is over and its record finished, so nothing more is written."""
+    """True if the match is over and its record is finished: then nothing more is recorded."""
 
     @property
     def inputs(self) -> list[Input]:
@@ -74,7 +74,7 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
         arena: arena that the court is to play.
 
     Raises:
-        UserError: if there is such a match and it can't go on here; the message says why.
+        UserError: if the match was left unfinished but can't go on here; the message says why.
     """
     for name, segments in reversed(court_matches(folder, court).items()):
         if is_over(name, segments):

@@ -37,7 +37,7 @@ def verify(
     """Judge a record again, simulate its sections again, and compare.
 
     Args:
-        record: what to verify.
+        record: the record to verify.
         folder: folder of its arena, if the arena is not installed.
         bound: largest distance from the record that another arithmetic may reach in a section [m,
             rad].
@@ -157,7 +157,7 @@ _worlds = Worlds()
 
 
 def _begin() -> None:
-    """Start a process that simulates sections; it leaves Ctrl-C to its parent."""
+    """Make this process, which simulates sections, ignore Ctrl-C: its parent handles it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

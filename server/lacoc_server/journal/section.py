@@ -44,11 +44,11 @@ _NO_DIGEST = bytes(8)
 
 
 class Difference(NamedTuple):
-    """Where a record differs from what its inputs give."""
+    """A beat of a record that differs from the beat computed from the inputs."""
 
     beat: int
     what: tuple[str, ...]
-    """Names of what differs (`differs.*`)."""
+    """Names of the parts that differ (`differs.*`)."""
 
 
 @dataclass(frozen=True)
@@ -118,18 +118,18 @@ class SectionFinding:
     first_beat: int
     last_beat: int
     bits: Difference | None = None
-    """Where bits first differ; None: nowhere."""
+    """The first difference in any bit; None: all bits are the same."""
     beyond: Difference | None = None
-    """Where the simulation is first too far from the record; None: nowhere."""
+    """The first difference that is too large for another arithmetic; None: there is none."""
     distance: float = 0.0
     """Largest distance from the record, in frames and at the section's end [m, rad]."""
 
     def differ(self, beat: int, what: str, far: bool) -> None:
-        """Note what differs in a beat; only the first beat that differs is kept.
+        """Note a difference in a beat; only those of the first beat that differs are kept.
 
         Args:
             beat: the beat.
-            what: name of what differs (`differs.*`).
+            what: name of the part that differs (`differs.*`).
             far: whether the difference is too large to come from another computer's rounding.
         """
         self.bits = _joined(self.bits, beat, what)
@@ -166,7 +166,7 @@ def simulate_section(section: Section, worlds: Worlds, bound: float = BOUND) -> 
     """Simulate a section and compare it with the record.
 
     Args:
-        section: what to simulate.
+        section: the section to simulate.
         worlds: gives the section's world, which afterwards is in the state of the section's end.
         bound: largest difference from the record that another arithmetic explains [m, rad]; where
             the difference is larger, the simulation stops.
@@ -257,11 +257,11 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Add a difference to the first one known so far; later beats do not count.
+    """Add a differing part to the first difference known so far.
 
     Returns:
-        A new difference if none was known; `known` with `what` added if it is of this beat; else
-        `known` as it was.
+        A new difference if `known` is None; `known` with `what` added if it is of the same beat;
+        else (the beat is later) `known` unchanged.
     """
     if known is None:
         return Difference(beat, (what,))

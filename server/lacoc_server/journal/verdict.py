@@ -17,11 +17,11 @@ class VerdictKind(StrEnum):
     """The three verdicts."""
 
     SAME = "same"
-    """Every bit is what the inputs give."""
+    """Every recorded bit is the same as the bit computed from the inputs."""
     OTHER_ARITHMETIC = "other-arithmetic"
-    """Games and result are what the inputs give; poses differ only by their last bits."""
+    """Rules and result agree with the inputs; poses differ only in their last bits."""
     DIFFERS = "differs"
-    """The record is not what the inputs give."""
+    """The record does not agree with the match computed from its inputs."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Verdict:
 
     @property
     def same(self) -> bool:
-        """True if the record is what its inputs give, with this or another arithmetic."""
+        """True if the record agrees with its inputs, with this or another arithmetic."""
         return self.kind is not VerdictKind.DIFFERS
 
 
@@ -70,9 +70,9 @@ def conclude(
         headers: headers of the record's segments.
         beats: number of beats judged.
         frames: number of frames compared.
-        judged: differences found by judging the games again; None stands for no difference.
+        judged: differences found by judging the match again; entries that are None are ignored.
         findings: result of each section's simulation.
-        other_model: where this machine first built a model with other bits; None: nowhere.
+        other_model: the first model whose bits differ on this machine; None: no model differs.
         bound: largest distance that another arithmetic may reach [m, rad].
     """
     found = [difference for difference in judged if difference is not None]
@@ -128,7 +128,7 @@ def may_differ(headers: Sequence[Header], finding: SectionFinding) -> bool:
 
 
 def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> Phrase | None:
-    """Say how two arithmetics differ; None if they do not."""
+    """Say on which machines record and replay were computed; None if all bits agree on both."""
     if not record:
         return say("verdict.no-arithmetic")
     if arithmetic.same(record, here):

@@ -105,7 +105,7 @@ def leave(match: MatchState, seat: Seat) -> Done:
 
 
 def unattended(match: MatchState) -> Phrase | None:
-    """Say why a match without a referee ends before its game is over; None: it goes on."""
+    """Say why a match without a referee ends because nobody is there; None: it goes on."""
     if all(seat.left for seat in match.seats):
         return say("over.everybody-left")
     limit = round(match.rules.unattended_s * BEATS_PER_S)

@@ -15,7 +15,7 @@ from lacoc_shared.gait.tables import Gait, Level, Posture
 from lacoc_shared.seat import BEAT_US
 
 _MOST_KEPT = 1024
-"""A drive keeps the results of at most so many ticks, less than 1 MB."""
+"""Most results of `tick` that a drive keeps in its cache (less than 1 MB)."""
 
 
 class DriveState(msgspec.Struct, frozen=True):
@@ -66,7 +66,7 @@ class Drive:
         self._rest_ticks = 1 - (-hold_us // BEAT_US)  # 1 + ceil(hold / 20 ms)
         self._repeat = repeat
         self._following: dict[DriveState, DriveState] = {}
-        """The state after a tick, for the states that came so far."""
+        """Cache of `tick`: for each state that has occurred, the state after it."""
 
     def begin(self, level: Level) -> DriveState:
         """Return the state of a robot that stands at a level.
@@ -78,7 +78,7 @@ class Drive:
     def stand(self, state: DriveState) -> DriveState:
         """Return the state from which the robot moves to the first posture of key 0 (rules 3).
 
-        The level stays. A state in which the robot stands already is returned as it is.
+        The level does not change. If the robot stands already, `state` itself is returned.
         """
         if state.stands:
             return state

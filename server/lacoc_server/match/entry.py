@@ -106,8 +106,8 @@ class JoinCheck:
     """Fills in the files that a join lacks, and checks them all.
 
     A join without any file gets the files of its seat if its team has that seat, else the contest's
-    robot with its sample gait. A join that brings only gait files gets the contest's robot. Nothing
-    is filled in for a gait file that is missing beside another file.
+    robot with its sample gait. A join that brings only gait files gets the contest's robot. If a
+    join brings files but lacks a gait file, no gait file is filled in.
     """
 
     robot: SentFile

@@ -41,7 +41,7 @@ PHYSICS_RUNS = frozenset({Phase.READY, Phase.PLAYING})
 _CREATED, _COUNTDOWN, _PLAYING = Phase.CREATED, Phase.COUNTDOWN, Phase.PLAYING
 
 MOST_STRAYS = 3
-"""A team is no longer ready when its robot has left its start place this often before play."""
+"""When a robot has left its start place this often before play, its team is no longer ready."""
 
 
 class Beat(msgspec.Struct, frozen=True):
@@ -54,7 +54,7 @@ class Beat(msgspec.Struct, frozen=True):
     ticked: bool
     """True if a tick of physics passed; False also after a fault."""
     touch: Touch | None
-    """What the rules saw besides the poses; None: nothing."""
+    """Touches and new places of robots, which poses do not show; None: there were none."""
     result: Result | None
     """The result, in a beat that ended the match or decided something after its end; else None."""
     sheet_changed: bool
@@ -72,11 +72,11 @@ class Match(MatchState):
         """The last game state that was asked for gains, and each seat's."""
 
     def legality(self) -> dict[str, Phrase | None]:
-        """List every decision by name: None if it is legal now, else why not."""
+        """Return for each decision, by name, None if it is legal now, else why not."""
         return referee.legality(self)
 
     def gains(self) -> tuple[Gains, ...]:
-        """Say what each robot would gain next; empty while no robot stands on the field.
+        """Return what each robot would gain next by the rules; empty before READY and after play.
 
         Raises:
             UserError: if the code of somebody else's game is wrong.
@@ -92,8 +92,8 @@ class Match(MatchState):
     def save(self) -> bytes:
         """Return all that the match is between two beats, its physics too.
 
-        After `load` the same inputs then give the same beats, bit for bit. A match of three minutes
-        has 1 MB, or 10 kB if its `history` keeps nothing.
+        After `load` the same inputs then give the same beats, bit for bit. The bytes of a match
+        of three minutes are 1 MB, or 10 kB if its `history` keeps nothing.
         """
         return saved.save(self)
 
@@ -186,7 +186,7 @@ class Match(MatchState):
         return Done()
 
     def _move_on(self) -> None:
-        """Change the phase where nobody has to decide."""
+        """Change the phase if that needs no decision: readiness, countdown, time and absence."""
         is_silent = all(seat.silent for seat in self.seats)
         self.silent_beats = self.silent_beats + 1 if is_silent else 0
         if self.phase is not _PLAYING:
@@ -200,7 +200,7 @@ class Match(MatchState):
                 self.finish(why)
 
     def _move_to_play(self) -> None:
-        """Enter READY when every seat is ready, and the lobby when one no longer is.
+        """Enter READY when every seat is ready; go back to the lobby when one no longer is.
 
         Without a referee, also begin the countdown. Enter PLAYING at the end of every countdown.
         """

@@ -11,7 +11,7 @@ from lacoc_shared.messages import Event, Outlook, Refusal
 from lacoc_shared.seat import BEATS_PER_S, IN_PLAY, Phase
 
 _BY = "outlook"
-"""Referee and reason in the copy, which has no record."""
+"""Stands for the referee's name and the reason in the copy, which is not recorded."""
 
 
 def look_ahead(copy: Match, decision: Decision | None, seconds: float) -> Outlook | Refusal:
@@ -19,7 +19,7 @@ def look_ahead(copy: Match, decision: Decision | None, seconds: float) -> Outloo
 
     Args:
         copy: the match; it is played on, so nobody else may use it.
-        decision: what the referee would decide before; None: nothing.
+        decision: the decision to take before play goes on; None: none.
         seconds: how long play goes on at most [s].
 
     Returns:

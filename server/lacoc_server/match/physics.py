@@ -18,7 +18,7 @@ from lacoc_shared.words import Phrase
 
 @dataclass(frozen=True)
 class Fault:
-    """A failure of physics in a tick; everything is as it was before that tick."""
+    """A failure of physics in a tick; the robots keep the state from before that tick."""
 
     seat: int
     """Index of the seat whose robot failed; `NOBODY` if that is not known."""
@@ -27,7 +27,7 @@ class Fault:
 
 
 class Physics(Protocol):
-    """Robots on a field."""
+    """The robots on a field, and the steps of their physics; see the module."""
 
     @property
     def scene(self) -> Scene:

@@ -45,16 +45,16 @@ class _DecisionRule:
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]
-    """Carries the decision out and returns the sentence for the log; raises `Illegal` before any
-    change.
+    """Carries the decision out and returns the sentence for the log. If the decision is not legal,
+    it raises `Illegal` and changes nothing.
     """
     then: Callable[[MatchState, Any], object] = lambda match, decision: None
-    """Does what follows from the decision; its events come after the decision's own."""
+    """Makes the further changes of the match (such as its phase), logged after the decision."""
     also: Callable[[MatchState], Phrase | None] = lambda match: None
     """Returns a further reason why the decision is not legal; None if there is none."""
 
     def why_not(self, match: MatchState) -> Phrase | None:
-        """Say why no decision of this kind is legal now; None if one may be."""
+        """Say why every decision of this kind is refused now; None if one can be legal."""
         if match.assigned is not None and match.assigned.waits:
             return say("why.waits-for-office")
         if match.phase in self.phases:
@@ -72,7 +72,7 @@ class _DecisionRule:
 
 
 def legality(match: MatchState) -> dict[str, Phrase | None]:
-    """List every decision by name: None if it is legal now, else why not."""
+    """Return for each decision, by name, None if it is legal now, else why not."""
     return {name: _RULES[kind].why_not(match) for name, kind in d.DECISIONS.items()}
 
 
@@ -217,7 +217,7 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
 
 
 def _score(match: MatchState, scores: tuple[int, ...]) -> Phrase | None:
-    """Say a score with its teams; None: there are not two."""
+    """Return a sentence with both teams and their points; None if there are not two seats."""
     if len(scores) != 2:
         return None
     left, right = match.seats
@@ -310,7 +310,7 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
 
 
 def _struck(match: MatchState, number: int) -> Phrase:
-    """Say what an event is that is taken back."""
+    """Describe, for the log, the event that is taken back."""
     event = match.history.event(number)
     if isinstance(event, int):
         return say("struck.set", marker=match.game.markers[event].name)

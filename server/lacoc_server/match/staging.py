@@ -12,8 +12,8 @@ from lacoc_server.match.seat import Seat
 from lacoc_shared.record.schema import Touch
 
 MIN_START_DISTANCE_M = 0.35
-"""Least distance of a free start place from another robot's centre [m]; it is the sum of both radii
-if that is larger.
+"""Least distance of a free start place from another robot's centre [m]; if the sum of both robots'
+radii is larger, that sum is used instead.
 """
 
 _BODY = struct.Struct("<7f")
@@ -65,7 +65,7 @@ class Staging:
         self.look()
 
     def look(self) -> None:
-        """Read where the robots are now."""
+        """Read the present poses of the robots from physics."""
         self.poses = self.physics.poses()
         self._bodies = [_BODY.unpack_from(self.poses, offset) for offset in self._offsets]
 
@@ -96,7 +96,7 @@ class Staging:
         return seen, Touch(tuple(touched), tuple(placed))
 
     def save(self) -> Places:
-        """Return what has to be kept besides the physics."""
+        """Return the places of the robots, which a saved match needs besides the physics."""
         return Places(tuple(self._placed), tuple(self._starts))
 
     def load(self, places: Places, physics: bytes) -> None:

@@ -84,7 +84,7 @@ class MatchState:
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.assigned = setup.assigned
-        """What was assigned; None: an older court opened the match."""
+        """The assigned seats and call; None: a court of an older version opened the match."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
@@ -123,7 +123,7 @@ class MatchState:
 
     @property
     def by_office(self) -> bool:
-        """Whether an office says what the court plays."""
+        """Whether the court plays for an office; False if the court was started alone."""
         return self.assigned is not None and not self.assigned.is_alone
 
     @property
@@ -233,7 +233,7 @@ class MatchState:
         )
 
     def result(self) -> Result:
-        """Describe the result as it stands."""
+        """Return the present result; fields that are not decided yet are empty."""
         official = {Phase.OFFICIAL: self.declared or self.winner(), Phase.VOID: "void"}
         return Result(
             match_id=self.setup.match_id,
@@ -303,7 +303,7 @@ class MatchState:
         self.tell_result()
 
     def take_up(self, physics: Physics, make_physics: MakePhysics) -> None:
-        """Continue with other physics, which steps the match from the next beat on.
+        """Replace the physics of the match; the new one steps it from the next beat on.
 
         Args:
             physics: the robots on their field, where they are now.
@@ -363,9 +363,9 @@ class MatchState:
         self.tell("result", said, winner=winner, scores=scores)
 
     def result_changed(self) -> None:
-        """Mark the result as changed, if the match has one: the beat then returns it."""
+        """Mark the result as changed, if there is one: then the present `Beat` has the result."""
         self._result_changed = self.phase in _ENDED
 
     def sheet_changed(self) -> None:
-        """Mark the sheet as changed: the beat then says so."""
+        """Mark the sheet as changed: then `sheet_changed` is set in the present `Beat`."""
         self.sheet_is_new = True

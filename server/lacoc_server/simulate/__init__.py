@@ -19,9 +19,9 @@ __all__ = ["SETTLE_BEATS", "Player", "Seated", "player", "seated", "simulate"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import what this package hands on when it is used.
+    """Import a name of `__all__` from its module when the name is used first.
 
-    So the package `environments` in this one can be imported without MuJoCo, and then says what to
+    So `simulate.environments` can be imported without MuJoCo, and can then say which packages to
     install.
     """
     if name in _FROM:

@@ -26,7 +26,7 @@ from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.words import say
 
 _BROUGHT = "@"
-"""Separates a bot from the folder of the files that it steers."""
+"""Sign in a player's name between the bot and the folder of the files that it steers."""
 _Files = tuple[SentFile, SentFile | None, SentFile | None]
 """Robot, postures (level A), locomotion (level B)."""
 

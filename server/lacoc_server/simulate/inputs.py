@@ -1,8 +1,8 @@
 """The inputs of a match without a network, beat by beat.
 
 A script is a generator: it yields the inputs of the next beat, and is sent the frame of that beat.
-`simulate` plays a match with it. Who checks a record sends it the recorded frames, and learns which
-inputs the record must have.
+`simulate` plays a match with it. A check of a record sends it the recorded frames instead, and so
+learns which inputs the record must have.
 """
 
 from collections.abc import Callable, Generator, Sequence
@@ -32,11 +32,11 @@ class BotFailed(UserError):
     """A team's bot raised an error, took too long, or returned no key; see `failed`."""
 
     CODE = "simulate.bot-failed"
-    """The code of its phrase."""
+    """The code of the phrase of every `BotFailed`."""
 
 
 def failed(team: str, why: Phrase) -> BotFailed:
-    """Make the error for the bot of a team, with what the bot did."""
+    """Make the error that names a team and says why its bot failed."""
     return BotFailed(say("simulate.bot-failed", team=team, why=why))
 
 
@@ -49,7 +49,7 @@ class Player:
     bot: BotFactory
     late_ticks: int = 0
     """Ticks of PLAYING that pass before the brain sees its first frame. Players who meet again get
-    another number, so that they play another match.
+    another number, so that their next match differs.
     """
 
 
@@ -78,7 +78,7 @@ def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
         joins: a join for each seat.
 
     Returns:
-        The newest frame. If physics stopped, it is not in PLAYING.
+        The newest frame. Its phase is PLAYING, unless physics stopped.
     """
     yield [*joins]
     frame = yield [ReadySeat(join.seat, True) for join in joins]
@@ -108,7 +108,7 @@ def _play(frame: Frame, players: Sequence[Player], sheet: Sheet) -> Generator[In
 
 
 def _asked(player: Player, bot: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
-    """Call the bot of a player; its error names the team."""
+    """Call a player's bot or brain; an error of it becomes one that names the team."""
     try:
         return bot(*arguments, **named)
     except UserError as error:

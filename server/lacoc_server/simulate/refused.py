@@ -4,13 +4,13 @@ from lacoc_shared.messages import Frame
 from lacoc_shared.seat import No
 
 _IN_VAIN = (No.NO_SUCH_KEY, No.LEVEL_CLOSED)
-"""Reasons that last for the whole match. After an [x] and in a freeze keys are refused too; that is
-part of the game.
+"""Reasons that last for the whole match; only these refusals are counted. Those after an [x] and in
+a freeze are part of the game.
 """
 
 
 class RefusedKeys:
-    """Counts the keys of a match that no seat can press in it.
+    """Counts, for each seat, pressed keys that are refused in the whole match.
 
     Args:
         seats: number of seats.
@@ -22,7 +22,7 @@ class RefusedKeys:
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """The number of such keys, by seat."""
+        """Number of keys that were pressed in vain, by seat."""
         return tuple(self._counts)
 
     def see(self, frame: Frame) -> None:

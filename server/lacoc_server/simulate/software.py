@@ -51,7 +51,7 @@ def _others() -> list[str]:
 
 
 def _roots(package: str) -> list[Path]:
-    """Return the folders of a package, or the file of a module; none if it is not there."""
+    """Return the folders of a package, or the file of a module; empty if it is not installed."""
     spec = find_spec(package)
     if spec is None:
         return []

@@ -26,8 +26,8 @@ _END_S = 5.0
 _WAIT_S = 1.0
 """How long to wait for an answer before looking whether a bot blocks the process [s]."""
 _MOST_MISSED = 60
-"""A process is ended if it looked at its bot in none of so many such times. On a busy machine a
-look is late, but not all looks are.
+"""A process is ended if its thread that watches the bot did not run in this many waits of `_WAIT_S`
+in a row: then the bot blocks the process. On a busy machine a few waits may pass without a look.
 """
 
 
@@ -36,7 +36,7 @@ class WorkerDied(Exception):
 
     Args:
         what: what happened.
-        last_words: why the process ended itself; None: it did not.
+        last_words: the process's own reason for its end; None if it gave none.
     """
 
     def __init__(self, what: str = "", last_words: Phrase | None = None) -> None:
@@ -105,7 +105,7 @@ class Workers:
     def submit(
         self, function: Callable[P, T], *arguments: P.args, **named: P.kwargs
     ) -> "Future[T]":
-        """Run a function of a module in a process.
+        """Run a module's function (no method, no closure) in a process.
 
         Returns:
             A future of the function's result. Its `result` raises `WorkerDied` if the process
@@ -138,7 +138,7 @@ class Workers:
         child.end()
 
     def _do(self, job: _WorkerJob, child: "_WorkerProcess") -> "_WorkerProcess":
-        """Run a job in a process, and set its result; return the process for the next job."""
+        """Run a job in a process, and set its result; return the process, or its replacement."""
         left = self._again
         while True:
             try:
@@ -204,7 +204,7 @@ class _WorkerProcess:
         return right, found
 
     def _wait(self, limit_s: float) -> list[Any]:
-        """Wait for an answer, the end of the process, or the limit; return what has come.
+        """Wait for an answer, the end of the process, or the limit; return the ready objects.
 
         Raises:
             WorkerDied: if a bot lets nothing else run in the process.
@@ -239,7 +239,7 @@ def _work(
     Args:
         connection: the pipe.
         background: whether this process gives way to others.
-        shown: what the parent process sees of bots here.
+        shown: shared memory, in which the parent process sees the running bot and each look at it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:

@@ -1,4 +1,4 @@
-"""Answers a studio's requests, without a network: the same request has the same answer."""
+"""Computes the answers to a studio's requests; pure: the same request has the same answer."""
 
 import math
 from collections.abc import Callable
@@ -85,7 +85,7 @@ class Trial(NamedTuple):
     """Remarks for a reader of the figures, such as that the trial ended early."""
 
     def __str__(self) -> str:
-        """Say how the robot walks: the figures, then what explains them."""
+        """Return the figures and then the explaining sentences, a line each."""
         rows = [(render(what), value) for what, value in told(self.figures)]
         width = max(len(what) for what, _ in rows)
         lines = [f"{what:{width}}  {value}" for what, value in rows]

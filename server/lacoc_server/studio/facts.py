@@ -60,7 +60,7 @@ def facts(robot: RobotSpec) -> dict[str, Any]:
 
 
 def leg_shape(leg: LegSpec) -> LegShape:
-    """Return a leg in millimetres and degrees, as a page bends it."""
+    """Return the shape of a leg in millimetres and degrees, for a page that draws and bends it."""
     x, y, z = (round(1000 * one, 6) for one in leg.position_m)
     l0, l1, l2 = (round(1000 * one, 6) for one in leg.lengths_m)
     return LegShape(
@@ -73,7 +73,7 @@ def leg_shape(leg: LegSpec) -> LegShape:
 
 
 def bounds(limits: Limits) -> dict[str, Bounds]:
-    """List the rules' limits for numbers of `facts`, by the same names; some have no limits."""
+    """List the rules' limits by the names of `facts`; numbers without limits are left out."""
     part_kg = limits.part_mass_min_kg, limits.part_mass_max_kg
     link_m = limits.link_min_m, limits.link_max_m
     return {

@@ -22,9 +22,9 @@ _TELL_S = 0.2
 _END_S = 10.0
 
 Done = Callable[[Answer], None]
-"""Takes the answer of a search; called on any thread."""
+"""Called with the answer of a search, on any thread."""
 Tell = Callable[[str, Progress], None]
-"""Takes the name of a search, and its progress."""
+"""Called with the name of a search and its progress."""
 
 
 class _WaitingSearch(NamedTuple):

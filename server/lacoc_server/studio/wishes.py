@@ -29,7 +29,7 @@ from lacoc_shared.words import say
 _MOST_S = 120.0
 """Longest search that a request may ask for [s]."""
 _MOST_KEPT, _MOST_BEFORE = 2, 60
-"""Most tables in a request to breed from, and most that it lists as shown before."""
+"""Most tables in a request as parents of variants, and most that it lists as shown before."""
 
 SearchRequest = CoachRequest | MapRequest | VariantsRequest
 REQUESTS: dict[str, type[SearchRequest]] = {
@@ -45,7 +45,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 def fulfil(
     request: SearchRequest, workers: Workers, stop: threading.Event, tell: Tell
 ) -> CoachReply | MapReply | VariantsReply:
-    """Search for what a request asks for.
+    """Search for a better gait, a map or variants, as a request asks.
 
     Args:
         request: the request.

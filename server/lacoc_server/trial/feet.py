@@ -13,7 +13,7 @@ from lacoc_server.trial.walk import Bools, Floats
 
 DOWN_SHARE, UP_SHARE = 0.02, 0.01
 """Shares of the robot's weight: a foot comes down when its load rises above the first, and is up
-again when it falls below the second.
+again when its load falls below the second.
 """
 
 

@@ -11,9 +11,9 @@ from lacoc_server.trial.walk import Floats, Walk
 from lacoc_shared.seat import BEAT_S
 
 _LEAST_M_S = 1e-3
-"""Up to this speed, forward or backward, there is no slip ratio [m/s]."""
+"""Speed, forward or backward, up to which no slip ratio is computed [m/s]."""
 _LEAST_M = 1e-2
-"""Up to this distance there is no cost of transport, straightness or turning per metre [m]."""
+"""Distance up to which cost of transport, straightness and turning per metre are None [m]."""
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,8 @@ def forward_key(gait: Gait) -> tuple[Level, int]:
     """Return the level and the digit of the key to try if the person names none.
 
     A gait without level B is tried with the last key of level A. A gait with level B is tried with
-    `FORWARD`, or with its first key if it has no such key. Both also if the key does nothing yet:
-    that is what its author wants to know.
+    `FORWARD`, or with its first key if it has no such key. The key is tried
+    even if it does nothing yet, because its author wants to see that.
     """
     if gait.locomotion is None:
         return Level.POSTURE, gait.keys(Level.POSTURE)[-1]

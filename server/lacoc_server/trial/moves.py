@@ -10,11 +10,12 @@ from lacoc_shared.gait.tables import Gait, Level
 _SECONDS = 5.0
 """How long each key is tried [s]: some cycles of a usual gait."""
 _LEAST_MM_S, _LEAST_DEG_S = 2.0, 1.5
-"""A robot that is slower in both stands."""
+"""A robot whose speed and turning are both below these [mm/s, deg/s] counts as standing."""
 _TIPPED = 0.8
-"""As in `trial.reasons.explain`: it leans by more than 37 degrees."""
+"""A robot has tipped over if its `upright` is below this, as in `trial.reasons.explain`."""
 _REACH_MM = 120.0
-"""Feet about this far from the middle tell whether a robot rather turns or rather walks."""
+"""Feet are about this far from the body's middle [mm]. If turning moves them faster than the robot
+walks, the key is named a turn."""
 
 
 def try_key(course: Course, gait: Gait, digit: int) -> str:
@@ -33,7 +34,7 @@ def try_key(course: Course, gait: Gait, digit: int) -> str:
 
 
 def move_of(figures: Figures) -> str:
-    """Return the name of `move.*` for a walk: what it mostly does."""
+    """Return the name (`move.*`) of the main motion of a walk, such as "forward" or "stand"."""
     if figures.upright < _TIPPED:
         return "tip-over"
     forward, left, turn = figures.speed_mm_s, figures.lateral_mm_s, figures.drift_deg_s

@@ -9,14 +9,15 @@ from lacoc_server.trial.support import margin_m
 from lacoc_shared.gait.tables import JOINTS_PER_LEG, Posture
 
 LIFT_M = 0.004
-"""A foot that is less above the lowest foot stands on the floor, about [m]."""
+"""A foot that is less than this above the lowest foot counts as standing on the floor [m]."""
 _TOUCHES_M = 0.001
-"""A shank that is higher than the body's underside by less than this touches the floor too."""
+"""A shank less than this above the body's underside counts as touching the floor [m]."""
 _LEANS_M = 0.025
-"""A foot that is higher than the lowest one by more than this carries nothing: the body would have
-to lean too far."""
+"""A foot that is more than this above the lowest foot carries nothing, because the body would have
+to lean too far [m]."""
 _OUTSIDE_M = 0.03
-"""A body whose middle is farther outside the feet that reach the floor than this falls on it."""
+"""A body falls if its middle is farther than this outside the polygon of the feet that reach the
+floor [m]."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,8 @@ class Steps:
     def swing_m2(self) -> list[float]:
         """For each leg, its motion forward times its lift, summed over the sequence.
 
-        A negative value means that the leg swings backward while it is lifted. A motion while the
-        robot does not stand counts nothing: then no foot pushes.
+        A negative value means that the leg swings backward while it is lifted. Motion between
+        postures in which the robot does not stand is not counted, because no foot pushes then.
         """
         return [
             sum(

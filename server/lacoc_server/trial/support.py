@@ -11,7 +11,7 @@ Point = tuple[float, float]
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """Return the corners of the convex hull, counter-clockwise; points on a line give its ends."""
+    """Return the corners of the convex hull, counter-clockwise; for points on a line, both ends."""
     ordered = sorted(set(points))
     if len(ordered) < 3:
         return ordered

@@ -1,4 +1,4 @@
-"""The most important figures of a trial, as a person reads them."""
+"""The most important figures of a trial, with names and values as texts for people."""
 
 from lacoc_server.trial.figures import Figures
 from lacoc_shared.words import Phrase, say
@@ -11,7 +11,7 @@ SHOWN_NAMES = {
     "slip_ratio": say("trial.figure-slip-ratio"),
     "belly_share": say("trial.figure-belly"),
 }
-"""What people call the figures that a search may make worse, by their names in `Figures`."""
+"""Names for people of the figures that a search may make worse, by their names in `Figures`."""
 
 
 def told(figures: Figures) -> tuple[tuple[Phrase, str], ...]:

@@ -105,4 +105,4 @@ class Walk:
     digests: tuple[bytes, ...]
     """State hash after each tick, as in the frames of a match."""
     fault: Phrase | None = None
-    """Why physics stopped before the end; None: it did not."""
+    """Why physics stopped before the end of the trial; None: physics did not stop."""

@@ -22,7 +22,7 @@ class Models(NamedTuple):
     stepped: Any
     """Only the geoms that exert forces: MuJoCo steps it."""
     touching: Any
-    """Those and the probes; None if there are no probes."""
+    """The geoms of `stepped` and the probes; None if there are no probes."""
 
 
 def compile_models(spec: mujoco.MjSpec) -> Models:
@@ -49,7 +49,7 @@ def compile_models(spec: mujoco.MjSpec) -> Models:
 
 
 def _is_solid(geom: Any) -> bool:
-    """Return whether a geom has an effect on a path: it can collide, or it has a mass."""
+    """Return whether a geom affects how robots move: it can collide, or it has a mass."""
     return bool(geom.contype or geom.conaffinity or geom.mass != 0)
 
 

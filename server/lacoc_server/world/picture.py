@@ -23,9 +23,9 @@ _TILT_DEG, _CLOSE_TILT_DEG = -68.0, -35.0
 _FAR = 1.2
 """Distance of the camera from the middle, in widths of the field."""
 _LARGE_M = 5.0
-"""On a larger field the camera looks at the robot in the first seat."""
+"""Size of a field [m] above which the camera looks at the robot in the first seat."""
 _CLOSE_M = 0.9
-"""Distance of the camera from that robot."""
+"""Distance of the camera from the robot in the first seat, on a large field [m]."""
 _MOST_GEOMS = 10_000
 
 
@@ -33,8 +33,8 @@ class Camera:
     """Takes pictures of one model: of the whole field from above, or of the robot on a large field.
 
     Args:
-        model: the compiled model; it stays as it is.
-        game: its game, for the markers and the size of the field.
+        model: the compiled model; it is not changed.
+        game: the game of the model, for the markers and the size of the field.
 
     Raises:
         UserError: if this machine can't draw.
@@ -96,7 +96,7 @@ class Camera:
         return np.ascontiguousarray(picture[::-1])  # its first row is the lowest one
 
     def close(self) -> None:
-        """Free what the graphics library holds."""
+        """Free the memory and context of the graphics library."""
         self._free()
 
 
@@ -107,7 +107,7 @@ def _free(context: Any, gl: Any) -> None:
 
 
 def _graphics() -> Any:
-    """Return what MuJoCo draws with: the library that MUJOCO_GL names, or one that fits.
+    """Return the graphics library for MuJoCo: the one that MUJOCO_GL names, or one that fits.
 
     MuJoCo's own choice needs a screen, and ends the program where there is none. EGL needs none.
     """

@@ -27,7 +27,7 @@ class Robot:
     actuators: slice
     """Indices in `ctrl` of its commanded angles, by joint id."""
     geoms: npt.NDArray[np.intp]
-    """Ids of its geoms."""
+    """Ids of the robot's geoms in the model."""
 
     @classmethod
     def find(cls, model: Any, entry: Entry, seat: str) -> "Robot":

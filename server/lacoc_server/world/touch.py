@@ -1,9 +1,9 @@
 """Finds the markers that the robots touch, once a tick; the touch exerts no force.
 
-MuJoCo's distance between two geoms decides. It is computed only for pairs that may touch. These are
+MuJoCo's distance between two geoms decides. It is computed only for pairs that may touch. They are
 found in a top view, in which an upright probe is a circle, and two points are never farther apart
-than in space. Which limbs are near a probe is found again only after the robot's body has moved a
-little, as a neighbour list of molecular dynamics is.
+than in space. The list of limbs near a probe is computed again only after the robot's body has
+moved a little, like a neighbour list in molecular dynamics.
 """
 
 import math
@@ -50,9 +50,9 @@ class _Limb(NamedTuple):
 
     parts: tuple[_RobotPart, ...]
     body: int
-    """Its first body."""
+    """Id of the body that the limb begins with."""
     reach_m: float
-    """Upper bound of the distance of its points from that body's origin, at all joint angles."""
+    """Upper bound of the distance of its points from the origin of `body`, at all angles [m]."""
 
 
 class _TouchPair(NamedTuple):
@@ -62,9 +62,9 @@ class _TouchPair(NamedTuple):
     half_m: float
     """`half_m` of the part."""
     middle_m2: float
-    """They can't touch if their centres are farther apart than this, squared, in the top view."""
+    """Square of the largest distance of their centres in the top view at which they may touch."""
     axis_m2: float
-    """The same for the probe's centre and the axis of the part."""
+    """Square of the largest distance of probe centre and part's axis at which they may touch."""
 
 
 class TouchTest:
@@ -101,7 +101,7 @@ class TouchTest:
         return [robot.touched(gap_m) for robot in self._robots]
 
     def _look(self) -> None:
-        """Put all geoms where they are now."""
+        """Compute the present positions of all geoms from `qpos`."""
         self._qpos[:] = self._from
         mujoco.mj_kinematics(self._model, self._data)
 
@@ -200,7 +200,7 @@ class _Outline:
 
 
 def _room_m(gap_m: float) -> float:
-    """Return how far apart in the top view a part and a probe may be and count as touching."""
+    """Return the gap of a part and a probe in the top view [m] up to which they may touch."""
     return _TOUCH_M + abs(gap_m)
 
 

@@ -32,7 +32,7 @@ MUJOCO_VERSION = mujoco.mj_versionString()
 """MuJoCo's version; a replay is exact only with the same one."""
 
 STATE = int(mujoco.mjtState.mjSTATE_INTEGRATION)
-"""All that the next step depends on; mjSTATE_FULLPHYSICS lacks a part of it (docs/facts.md 1)."""
+"""All state that the next step depends on; mjSTATE_FULLPHYSICS lacks some (docs/facts.md 1)."""
 
 _FLOAT32 = np.dtype("<f4")
 
@@ -277,9 +277,9 @@ def _robots(model: Any, entries: Sequence[Entry], seats: Sequence[str]) -> list[
 
 
 def _weights(model: Any) -> npt.NDArray[np.float64]:
-    """Return how far a difference of 1 in each number of the state can move a robot in a tick.
+    """Return a weight for each number of the state: how far a change of 1 moves a robot in a tick.
 
-    The weight 0 marks numbers that must be equal whatever the machine's arithmetic is.
+    The weight is 0 for numbers that must be equal, whatever the machine's arithmetic is.
     """
     tick_s = SUBSTEPS * model.opt.timestep
     weight = {

@@ -21,7 +21,7 @@ NOT_PROVEN = 3
 """Exit code: nothing contradicts the standings, but not all could be checked here."""
 
 _LISTED = 12
-"""Of what is like the rest so many are shown; --json has all."""
+"""Most lines that are shown of a kind of finding; with --json all are printed."""
 
 _Folder = Annotated[Path, typer.Argument(metavar="FOLDER", help="The published folder.")]
 

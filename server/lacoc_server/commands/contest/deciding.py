@@ -154,10 +154,12 @@ def draw(
 
 
 def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:
-    """Show what a decision changes, and ask for it; without a terminal, the answer is no.
+    """Show what a decision changes, and return whether the person at the terminal confirms it.
+
+    Without a terminal the answer is no, unless `yes` is given.
 
     Args:
-        effect: what it changes.
+        effect: what the decision changes, a line each.
         yes: do not ask; the answer is yes.
     """
     for line in effect:

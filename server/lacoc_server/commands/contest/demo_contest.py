@@ -8,7 +8,7 @@ from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.words import say
 
 _SECONDS = 20.0
-"""Usual length of a game."""
+"""Length of a game where the command names none [s]."""
 
 
 def show(arena: str, seconds: float | None, speed: float, folder: Path, *, headless: bool) -> None:

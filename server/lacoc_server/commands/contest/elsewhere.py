@@ -1,4 +1,4 @@
-"""Run courts of a contest on another machine than the office's."""
+"""Run courts of a contest on a machine that is not the office's."""
 
 import time
 from contextlib import ExitStack

@@ -72,16 +72,16 @@ def invite(
 
 
 class Invited(NamedTuple):
-    """Whom a link is for."""
+    """A link, and the person or team that gets it."""
 
     kind: Literal["team", "referee", "staff"]
     name: str
-    """Of the team, of the referee's court, or of one of the staff."""
+    """Name of the team, of the referee's court, or of the member of the staff."""
     link: str
 
 
 def _teams(plan: ContestFile, file: Path, team: str | None, host: str | None) -> Iterator[Invited]:
-    """Yield the teams of people, or one team."""
+    """Yield the links of all teams that people (not bots) play for, or of one team."""
     from lacoc_server.contest.acts import organiser
 
     for name, token in organiser.tokens(file, team).items():
@@ -89,7 +89,7 @@ def _teams(plan: ContestFile, file: Path, team: str | None, host: str | None) ->
 
 
 def _staff(plan: ContestFile, host: str | None) -> Iterator[Invited]:
-    """Yield the referee of each court, then the staff."""
+    """Yield the link of each court's referee, then those of the staff."""
     for court in plan.courts:
         token = plan.secrets.referee(court)
         yield Invited("referee", court, link(plan, "referee", token, host, court))
@@ -111,7 +111,7 @@ def link(plan: ContestFile, page: str, token: str, host: str | None = None, cour
     Args:
         plan: the contest file.
         page: name of the page.
-        token: token of whom the link is for.
+        token: token of the person or team that gets the link.
         host: host in the link, if the contest file does not say where the pages are; None: this
             machine's.
         court: the court that the link names; "": none.

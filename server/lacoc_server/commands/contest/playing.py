@@ -190,7 +190,7 @@ def run(
 
 @contextmanager
 def _retiring() -> Iterator[None]:
-    """End with `NOT_AGAIN` if the contest's office is at another machine now."""
+    """End this process with `NOT_AGAIN` if another machine has become the contest's office."""
     from lacoc_server.contest.kept.machine import Retired
 
     try:
@@ -201,7 +201,7 @@ def _retiring() -> Iterator[None]:
 
 
 def _take_over(file: Path) -> None:
-    """Make this machine the office, unless it is that already."""
+    """Make this machine the contest's office; do nothing if it is the office already."""
     from lacoc_server.contest.standby.taking_over import take_over
 
     said = take_over(file)
@@ -248,7 +248,7 @@ def _live(
 
 
 def _tell_news(what: "Phrase") -> None:
-    """Print what has happened in the contest, with the time of day."""
+    """Print a piece of news from the contest, with the time of day."""
     screen.show(f"{datetime.now():%H:%M} {render(what)}", screen.stderr)
 
 
@@ -304,6 +304,6 @@ def _show(sheet: "ContestSheet") -> None:
 
 
 def _deciding(table: "Table") -> list[str]:
-    """Return the codes that decided a rank and have no column of their own, in their order."""
+    """Return the tie-breaks (except points and seed) that decided a rank, in the table's order."""
     decided = {row.decided_by for row in table.rows} - {"", "seed", "points"}
     return [code for code in table.tie_breaks if code in decided]

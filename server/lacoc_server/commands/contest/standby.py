@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from lacoc_server.contest.standby.following import CopyState
 
 _PAUSE_S = 0.2
-"""Time between two looks at the office."""
+"""Time between two requests to the office [s]."""
 _SHOWN_S = 1.0
 _SILENT_S = 5.0
-"""An office that has not answered for this long is told as gone."""
+"""If the office has not answered for this long [s], a warning says that it is gone."""
 
 
 def standby(
@@ -78,7 +78,7 @@ def standby(
 
 
 class _CopyTeller:
-    """Says how old the copy is, and what is wrong.
+    """Prints how old the copy is, and each new problem with copying.
 
     Args:
         address: address of the office.
@@ -95,7 +95,7 @@ class _CopyTeller:
         self._printed_s = 0.0
 
     def copied(self, copy: "CopyState") -> None:
-        """Take note of a step that succeeded."""
+        """Take note of a successful step, with the state of the copy after it."""
         if self._is_told or self._copy is None:
             screen.note(say("standby.there", at=self._address))
         self._copy, self._heard_s = copy, time.monotonic()
@@ -113,7 +113,7 @@ class _CopyTeller:
         self._print()
 
     def failed(self, why: Phrase) -> None:
-        """Take note of an error; the same one is told once."""
+        """Take note of an error; print it if it differs from the last one."""
         if why != self._trouble:
             self._trouble = why
             screen.warn(why)
@@ -121,7 +121,7 @@ class _CopyTeller:
 
     @property
     def line(self) -> str:
-        """What is shown in a terminal."""
+        """The status line of a terminal: the age and the contents of the copy."""
         if self._copy is None:
             return render(say("standby.waits", at=self._address))
         facts, records, unfinished = self._copy[1:]
@@ -137,7 +137,7 @@ class _CopyTeller:
 
     @property
     def _age(self) -> str:
-        """Age of the copy [s]; "-": it was never whole."""
+        """Age of the copy [s]; "-" if the copy was never complete."""
         if self._copy is None or not self._copy.at_ms:
             return "-"
         return f"{time.time() - self._copy.at_ms / 1000:.1f}"

@@ -1,4 +1,4 @@
-"""Steer the day of a contest: what the office's page decides, from a terminal."""
+"""Commands for the day of a contest: from a terminal, the decisions of the office's page."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, time
@@ -203,17 +203,18 @@ def _steer(
     asks: bool = False,
     yes: bool = False,
 ) -> None:
-    """Append the fact of an act, and say what was done.
+    """Append the facts of an organiser's act to the contest's facts, and print what was done.
 
     Args:
         file: the contest file.
         by: who of the staff decides; "": the organiser.
-        act: returns the facts for the contest as it is; the last one says what was done.
-        asks: whether to show first what it changes, and to ask.
+        act: returns the new facts for a given state of the contest; what was done is printed from
+            the last of them.
+        asks: whether to show what the act changes, and to ask before it is done.
         yes: do not ask.
 
     Raises:
-        UserError: if it can't be done.
+        UserError: if the act can't be done.
     """
     from lacoc_server.contest.acts import deciding, steering
     from lacoc_server.contest.kept.folder import ContestFolder

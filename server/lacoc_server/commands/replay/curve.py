@@ -1,4 +1,4 @@
-"""What `lacoc replay odds` and `lacoc replay highlights` share: computing the odds of a record."""
+"""Computes the odds of a record, for `lacoc replay odds` and `lacoc replay highlights`."""
 
 from pathlib import Path
 from typing import Annotated

@@ -58,7 +58,7 @@ def highlights_command(
 
 
 def _told(source: ForkSource, one: Swing) -> dict[str, Any]:
-    """Return a moment as `lacoc film --moments` reads it, and what else is known of it."""
+    """Return a moment in the form that `lacoc film --moments` reads, with some more entries."""
     events = _events(source, one)
     return {
         "beat": events[-1].beat if events else one.after.beat,
@@ -71,7 +71,7 @@ def _told(source: ForkSource, one: Swing) -> dict[str, Any]:
 
 
 def _events(source: ForkSource, one: Swing) -> list[Event]:
-    """Return the events of the game, the decisions and the restarts in a stretch."""
+    """Return the events at markers, the decisions and the restarts during a swing."""
     return [
         event
         for event in source.record.events

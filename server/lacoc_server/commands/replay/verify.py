@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase, render, say
 app = typer.Typer()
 
 NOT_PROVEN = 1
-"""Exit code: the record differs from what its inputs give, or a part of it is lost."""
+"""Exit code: the record differs from the match computed from its inputs, or lost a part."""
 
 
 @app.command(name="verify")
@@ -99,7 +99,7 @@ def _told(record: Record, verdict: Verdict) -> dict[str, Any]:
 
 
 def _said(record: Record, verdict: Verdict) -> Phrase:
-    """Return the verdict in words; of a record that lost a part it is a verdict on the rest."""
+    """Return the verdict in words; if a part of the record is lost, they are about the rest."""
     if record.lost and verdict.same:
         return say("verdict.rest", verdict=verdict.said)
     return verdict.said

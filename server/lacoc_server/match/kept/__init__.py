@@ -1,1 +1,1 @@
-"""What a match keeps of itself: the ticks that were judged, and its whole state as bytes."""
+"""Data that a match keeps: the judged ticks, for take-backs, and its whole state as bytes."""

@@ -1,11 +1,11 @@
-"""What the rules saw and decided, so that one event can be taken back (rules 4.1).
+"""Everything that the rules saw and decided, so that an event can be taken back (rules 4.1).
 
 A match keeps every observation since its first event that can be taken back. To take an event back,
 it judges the game again from there, without the event's claim. Paths, clock and all other decisions
 stay as they were, and nothing is deleted from the log.
 
 A step is a judged tick, or a referee's change of a marker. The numbers of an observation are
-packed; a step has a note only if there is more to keep. A match of three minutes takes a megabyte.
+packed; a step has a note only if something else happened in it. Three minutes take a megabyte.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -22,12 +22,12 @@ from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase
 
 _VIEW_NUMBERS = 7
-"""Numbers of a `RobotView`; its other fields are empty in most ticks."""
+"""How many of the fields of a `RobotView` are numbers; the others are empty in most ticks."""
 _VIEW = Struct(f"<{_VIEW_NUMBERS}d")
 
 
 class SetMarker(msgspec.Struct, frozen=True):
-    """A referee's change of a marker, between two ticks; `struck`: it was taken back."""
+    """A referee's change of a marker, between two ticks; if `struck`, it was taken back."""
 
     marker: int
     value: int
@@ -35,29 +35,29 @@ class SetMarker(msgspec.Struct, frozen=True):
 
 
 class Note(msgspec.Struct, frozen=True):
-    """What a step has besides the numbers of an observation."""
+    """Everything in a step except the numbers of its observation."""
 
     changed: SetMarker | None = None
     """The change of a marker; None: the step is an observation."""
     placed: tuple[Place | None, ...] = ()
-    """For each robot where it was put; empty: all of them walked."""
+    """For each robot the place where it was put, or None; empty: no robot was put anywhere."""
     touched: tuple[tuple[int, ...], ...] = ()
-    """For each robot the markers that it touched; empty: none did."""
+    """For each robot the markers that it touched; empty: no robot touched any."""
     events: tuple[GameEvent, ...] = ()
-    """What the rules made of the observation."""
+    """The events that the rules decided from the observation."""
     numbers: tuple[int, ...] = ()
-    """Numbers of those events in the log; for a change of a marker, the number of its decision."""
+    """Numbers of `events` in the log; for a change of a marker, the number of its decision."""
     struck: frozenset[Claim] = frozenset()
     """Claims of events that were taken back; the rules ignore them."""
     idle: tuple[int, ...] = ()
-    """Seats whose claims count for nothing, because no key has moved their robots yet."""
+    """Seats whose claims do not count, because no key has moved their robots yet."""
 
 
 _PLAIN = Note()
 
 
 class SavedHistory(msgspec.Struct, frozen=True):
-    """A history as it is saved; states of the game are msgpack."""
+    """A history in the form in which it is saved; states of the game are msgpack."""
 
     state: msgspec.Raw
     over: Phrase | None
@@ -71,7 +71,7 @@ class SavedHistory(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class Fold:
-    """Result of a take-back, before it is accepted."""
+    """The match judged again without an event, before this take-back is accepted."""
 
     notes: dict[int, Note]
     """Notes of all steps, as judged again."""
@@ -92,11 +92,11 @@ class History:
         self.state: Any = game.start()
         """The game's state now."""
         self.over: Phrase | None = None
-        """Why the game was over after the newest tick; None: it was not."""
+        """Why the game was over after the newest tick; None: the game was not over."""
         self._judged: Any = None
-        """The newest state of which `over` is known."""
+        """The newest state for which `over` was computed."""
         self._keeps = True
-        """False if no event is ever taken back."""
+        """False after `keep_nothing`: then no event can be taken back."""
         self._step_of: dict[int, int] = {}
         """For each event that can be taken back, the index of its step."""
         self._views = 0
@@ -115,8 +115,8 @@ class History:
 
         Args:
             observation: what the rules see.
-            next_number: number of the first event; the others follow.
-            idle: seats whose claims count for nothing.
+            next_number: log number of the first new event; each further event gets the next one.
+            idle: seats whose claims do not count.
         """
         self.state, events = self._step(self.state, observation, frozenset(), idle)
         if self.state is not self._judged:
@@ -178,7 +178,7 @@ class History:
         return note.events[note.numbers.index(number)]
 
     def without(self, number: int) -> Fold:
-        """Judge the game again without one event; the history stays as it is.
+        """Judge the game again without one event; this history does not change.
 
         Raises:
             KeyError: if the event can't be taken back (see `knows`).
@@ -283,8 +283,8 @@ class History:
     def _forget(self) -> None:
         """Forget all steps, because no event in them can be taken back.
 
-        Judging again will begin with the present state. A practice has no events and may go on for
-        days.
+        Judging again will begin with the present state. So memory does not grow in a practice,
+        which has no such events and may go on for days.
         """
         self._first, self._first_over = self.state, self.over
         if self._count:
@@ -322,10 +322,10 @@ def _note(
     numbers: tuple[int, ...] = (),
     idle: tuple[int, ...] = (),
 ) -> Note:
-    """Return the note of an observation; `_PLAIN` if the observation is only where robots are.
+    """Return the note of an observation; `_PLAIN` if it has nothing but the robots' numbers.
 
-    It is more than that if a robot was put at a place, touched a marker or is idle, or if events
-    came of it.
+    A note is needed if a robot was put at a place, touched a marker or is idle, or if the rules
+    decided an event.
     """
     placed = touched = False
     for view in observation:

@@ -18,7 +18,7 @@ from lacoc_shared.seat import No, Phase
 from lacoc_shared.words import Phrase
 
 _FORMAT = 3
-"""Version of the layout; bytes of another one are refused."""
+"""Version of the layout of saved bytes; bytes with another version are refused."""
 
 
 class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
@@ -44,7 +44,7 @@ class _SavedMatch(msgspec.Struct, frozen=True, array_like=True):
 
     format: int
     made_of: bytes
-    """Hash of what its setup says of the game."""
+    """Hash of the parts of the match's setup that describe the game."""
     physics: bytes | None
     """The state of physics; None: no robots are on the field."""
     places: Places
@@ -76,7 +76,7 @@ _PLAIN_FIELDS = tuple(
     if name not in ("format", "made_of", "physics", "places", "history", "seats")
 )
 _MOST_BYTES = 1 << 28
-"""Longer bytes are refused; a match of three minutes is 1 MB."""
+"""Longest saved match that is accepted [bytes]; a match of three minutes has 1 MB."""
 
 
 def save(match: MatchState) -> bytes:

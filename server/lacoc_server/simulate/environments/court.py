@@ -1,4 +1,4 @@
-"""What the environments of a game share: robots, spaces, actions and rewards."""
+"""Robots, spaces, actions and rewards, for all environments of a game."""
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -35,7 +35,7 @@ _MOST = 1e4
 
 
 class AgentCourt:
-    """A game with its robots, and the form of what agents see and do.
+    """A game with its robots, and the spaces of what agents see and do.
 
     Args:
         arena: name or folder of the arena.
@@ -98,7 +98,7 @@ class AgentCourt:
             raise UserError(say("environment.no-end", arena=arena.name))
 
     def episode(self) -> Episode:
-        """Return a new episode; it has not begun, but its match has a sheet.
+        """Return a new episode that has not begun; its match already has a sheet.
 
         Raises:
             UserError: if a robot does not stay on its start place, or physics stops.
@@ -178,14 +178,14 @@ class AgentCourt:
 
 
 def shares(action: Any, shape: tuple[int, ...]) -> Angles:
-    """Return an action of angles as an array of this shape; numbers beyond -1 to 1 are cut.
+    """Return an action of angles as an array of this shape, with numbers limited to -1 to 1.
 
     Args:
-        action: what was given.
+        action: the action that was given.
         shape: (joints,), or of a table (postures, joints).
 
     Raises:
-        UserError: if it has another shape, or a number is not finite.
+        UserError: if the action has another shape, or a number in it is not finite.
     """
     try:
         share = np.asarray(action, np.float64)
@@ -211,7 +211,7 @@ def lead(frame: Frame, seat: int) -> int:
 
 
 def _plain(value: Any) -> Any:
-    """Return settings without numpy: its numbers as those of Python, its arrays as lists."""
+    """Return settings with Python's numbers and lists in place of numpy's numbers and arrays."""
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist()
     if isinstance(value, Mapping):

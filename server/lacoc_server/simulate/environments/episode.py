@@ -35,7 +35,7 @@ T = TypeVar("T")
 COURT = "environment"
 """Name of the court in records of episodes."""
 _PRESSED = Struct("<IBBB")
-"""A key that was pressed: beat, seat, level, digit."""
+"""Layout of a saved key press: beat, seat, level, digit."""
 _MOST_BYTES = 1 << 28
 
 
@@ -43,13 +43,13 @@ class _SavedEpisode(msgspec.Struct, frozen=True, array_like=True):
     opening: Opening
     angles: bool
     robots: bytes
-    """`Begun.robots`."""
+    """Hash of the files of all seats (`Begun.robots`)."""
     match: bytes
     pressed: bytes
     seqs: tuple[int, ...]
     extra: bytes
     targets: tuple[Posture, ...] = ()
-    """If angles are followed, for each seat those that its robot moves to."""
+    """For each seat the angles that its robot moves to [rad]; empty if robots follow keys."""
 
 
 class Begun:
@@ -126,7 +126,7 @@ class Episode:
         self._seqs = [0] * len(begun.joins)
         self._frame: Frame | None = None
         self.match = self._match(0)
-        """The match that is played; before `begin` one that could be."""
+        """The match of the episode; before `begin` and `load` one that is only for its sheet."""
         begun.begin(self.match, 0)
 
     @property
@@ -149,7 +149,7 @@ class Episode:
         """Check that there was a `begin` or a `load`.
 
         Raises:
-            UserError: if not.
+            UserError: if there was neither.
         """
         if not self.has_begun:
             raise UserError(say("environment.not-begun"))
@@ -158,7 +158,7 @@ class Episode:
         """Begin an episode; return the frame of its first beat of play.
 
         Raises:
-            UserError: as `Begun.begin` does.
+            UserError: in the same cases as `Begun.begin`.
         """
         if not self.begun.has(opening.place):
             self._matches.pop(opening.place, None)  # only a match without a beat can be led to play
@@ -226,7 +226,7 @@ class Episode:
         """Return the whole episode; `load` goes on from it bit for bit.
 
         Args:
-            extra: a value that the caller keeps with it.
+            extra: a value of the caller, to be saved too.
 
         Raises:
             UserError: if no episode has begun.
@@ -251,14 +251,14 @@ class Episode:
 
         Args:
             data: bytes of `save`.
-            kind: type of the value that the caller kept with it.
+            kind: type of the caller's value (`extra` of `save`).
 
         Returns:
-            That value.
+            The caller's value.
 
         Raises:
             UserError: if the bytes are not an episode of this arena, these robots and settings, or
-                the value is of another type. The episode is then as it was.
+                the value is of another type. The episode is then unchanged.
         """
         try:
             saved = decode(saved_bytes(data), _SavedEpisode, _MOST_BYTES)
@@ -361,10 +361,10 @@ class Episode:
 
 
 def saved_bytes(given: Any) -> bytes:
-    """Return what was given to `load`, if it is bytes.
+    """Return the argument of `load` as bytes.
 
     Raises:
-        BadMessage: if it is something else.
+        BadMessage: if the argument is not bytes.
     """
     if not isinstance(given, bytes | bytearray | memoryview):
         raise BadMessage(f"{type(given).__name__} instead of bytes")
@@ -378,7 +378,10 @@ def _contents(join: JoinSeat) -> list[bytes | None]:
 
 
 def _steer(match: Match, targets: Sequence[Posture] = ()) -> None:
-    """Let the robots of a match move to the angles of each seat; none: to their start postures."""
+    """Let the robots of a match move to the angles of each seat.
+
+    If `targets` is empty, they move to their start postures.
+    """
     for seat in match.seats:
         if seat.entry is not None:
             seat.drive = drive = Steered(seat.entry)

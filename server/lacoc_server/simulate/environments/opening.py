@@ -15,7 +15,8 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import say
 
 _NEAR = 0.75
-"""How like a wrong name is to the right one: "late_tick" 0.95; "state" is like "seat" by 0.67."""
+"""Least similarity (`difflib`) of a misspelt name to the option that was meant. That of "late_tick"
+to "late_ticks" is 0.95; that of "state", another word, to "seat" is 0.67."""
 OPTIONS = ("place", "late_ticks", "seat", "reset_mask")
 """Names of the options of all environments of a game."""
 MOST_LATE_TICKS = 25
@@ -25,7 +26,7 @@ _PLACES = ("start_cells", "starts")
 
 
 class Opening(msgspec.Struct, frozen=True):
-    """One way to begin."""
+    """One way in which an episode can begin."""
 
     place: int = 0
     """Index of the start place in the arena file's list; the right robot begins opposite to it."""
@@ -47,18 +48,18 @@ def draw(arena: Arena, chance: np.random.Generator) -> Opening:
 
 
 def known_options(options: Any, known: Sequence[str]) -> dict[str, Any]:
-    """Return options of `reset`, after a look at their names.
+    """Check the names of options of `reset`, and return the options.
 
-    Libraries and wrappers have options of their own, so an unknown name is no mistake. But one that
-    is nearly the name of an option here is.
+    Libraries and wrappers have options of their own, so an unknown name is allowed. But a name that
+    is nearly the name of an option in `OPTIONS` is a mistake.
 
     Args:
-        options: what was given.
-        known: names of the options that the environment has, of `OPTIONS`.
+        options: the options that were given.
+        known: the names in `OPTIONS` that this environment uses.
 
     Raises:
-        UserError: if they are not a dict, or a name is nearly one of `OPTIONS`, or is one that this
-            environment does not have.
+        UserError: if the options are not a dict, or a name that is not in `known` is the same as,
+            or nearly, a name in `OPTIONS`.
     """
     given = table("options", options, '{"place": 0}')
     for name in (one for one in given if one not in known):

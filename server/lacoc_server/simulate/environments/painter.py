@@ -47,7 +47,7 @@ class Painter:
         return self._camera.take(physics.save(), board)
 
     def close(self) -> None:
-        """Free what draws."""
+        """Free the camera that draws the pictures."""
         if self._camera is not None:
             self._camera.close()
             self._camera = None

@@ -180,7 +180,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
         Raises:
             UserError: if they are not of a `LacocParallelEnv` with this arena, these settings,
-                robots and this kind of actions; the environment is then as it was.
+                robots and this kind of actions; the environment is then unchanged.
         """
         is_on = self._episode.load(saved, bool)
         frame = self._episode.frame
@@ -201,7 +201,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         return self._painter.draw(match.physics, match.game, self._episode.frame.markers)
 
     def close(self) -> None:
-        """Free what draws pictures."""
+        """Free the camera that draws the pictures."""
         self._painter.close()
 
     def _seen(self) -> dict[str, Numbers]:

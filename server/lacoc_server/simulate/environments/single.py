@@ -80,14 +80,14 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Frames that the bot saw in this episode."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave the bot out: it may be any function, and its brain may remember what it saw."""
+        """Return the state without the bot and its brain, because these may not be picklable."""
         return {name: one for name, one in vars(self).items() if name not in ("_bot", "_brain")}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Find the bot again, and show all frames to a new brain.
 
         Raises:
-            UserError: if the bot is gone, or plays otherwise (see `load`).
+            UserError: if the bot is not installed any more, or presses other keys (see `load`).
         """
         self.__dict__.update(state)
         self._bot = brains.find(self.court.arena, self._opponent)
@@ -185,8 +185,8 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
         Raises:
             UserError: if they are not of a `LacocEnv` with this arena, these settings and robots;
-                the environment is then as it was. Or if the new brain pressed other keys than the
-                saved one: then the bot would play another match.
+                the environment is then unchanged. Also if the new brain presses other keys than
+                the bot did: then the bot would play another match.
         """
         shown = self.episode.load(saved, list[bytes])
         self._lead = lead(self.episode.frame, self.seat)
@@ -215,7 +215,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         self.court.digit(0, action)
 
     def close(self) -> None:
-        """Free what draws pictures."""
+        """Free the camera that draws the pictures."""
         self._painter.close()
 
     def _begin(self, opening: Opening) -> None:
@@ -244,7 +244,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Make a new brain for the bot, and show it the frames that the bot saw.
 
         Raises:
-            UserError: if it does not press the keys that the bot pressed in the episode.
+            UserError: if the new brain does not press the keys that the bot pressed in the episode.
         """
         other = 1 - self.seat
         self._brain, self._shown = self._bot(self._sheet, other), shown

@@ -39,7 +39,7 @@ class RowEnvironment(Protocol):
         """Let the beats of a step pass."""
 
     def observe(self) -> Numbers:
-        """Return what is seen now."""
+        """Return what the learner sees now."""
 
     def check(self, action: Any) -> None:
         """Check that an episode has begun, and that the action space has an action."""
@@ -223,13 +223,13 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
         return tuple(pictures)
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Free what draws pictures, and the threads."""
+        """Free the camera that draws the pictures, and end the threads."""
         self._painter.close()
         self._threads.shutdown()
 
 
 class LacocVectorEnv(Rows[LacocEnv]):
-    """Matches against a bot at once; each row is a `LacocEnv`.
+    """Many matches against a bot at once; each row is a `LacocEnv`.
 
     Args:
         num_envs: number of rows.
@@ -265,7 +265,7 @@ class LacocVectorEnv(Rows[LacocEnv]):
 
 
 class WalkVectorEnv(Rows[WalkEnv]):
-    """Robots that walk at once, each on a floor of its own; each row is a `WalkEnv`.
+    """Many robots that walk at once, each on its own floor; each row is a `WalkEnv`.
 
     Args:
         num_envs: number of rows.

@@ -40,7 +40,7 @@ _POSTURES = 4
 _FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 20.0, 0.5, 1.0
 """Usual weights of the reward: the sample gait walks 0.06 m/s."""
 _HEALTHY_UP = 0.5
-"""A robot that is less upright than this is falling: its body is tilted by 60 degrees."""
+"""A robot is falling if its `_up` is less than this: its body is tilted by 60 degrees or more."""
 _UNUSED: dict[str, dict[str, Any]] = {
     "angles": {"postures": _POSTURES},
     "table": {
@@ -55,7 +55,7 @@ _UNUSED: dict[str, dict[str, Any]] = {
 """For each kind of actions, arguments that have no effect, with their defaults."""
 _NUMBERS = (int, float, np.integer, np.floating)
 _FIGURES = ("speed_m_s", "lateral_m_s", "drift_rad_s", "upright", "slip_m_s", "belly_share")
-"""What is seen after a table was tried."""
+"""Figures that are the observation after a table was tried."""
 _BODY = {
     "ahead_m": 20.0,
     "left_m": 20.0,
@@ -67,7 +67,7 @@ _BODY = {
     "speed_left_m_s": 100.0,
     "speed_up_m_s": 100.0,
 }
-"""What is seen of the body in a walk by angles, and the bounds of its numbers."""
+"""Numbers of the body in the observation of a walk by angles, with their bounds."""
 
 
 class _SavedWalk(msgspec.Struct, frozen=True, array_like=True):
@@ -343,7 +343,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         shares(action, self._shape)
 
     def close(self) -> None:
-        """Free what draws pictures."""
+        """Free the camera that draws the pictures."""
         self._painter.close()
 
     def _require_begun(self) -> None:
@@ -351,7 +351,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             raise UserError(say("environment.not-begun"))
 
     def _tick(self) -> bool:
-        """Let a tick pass; return whether it passed."""
+        """Let a tick pass; return False if physics stopped in it."""
         state = self._drive.tick(self._state)
         if self._world.step([state.angles]) is not None:
             return False

@@ -1,7 +1,7 @@
 """The odds of a record: computed from forks in other processes, and kept beside the record.
 
-Each moment has a hash of all that decides how its forks go: the match until then, the bots and the
-software. So forks that were played are not played again, also if more are wanted.
+Each moment has a hash of everything that decides how its forks go: the match until then, the bots
+and the software. So forks that are kept are not played again, even if more forks are wanted.
 """
 
 import hashlib
@@ -43,9 +43,9 @@ class Odds(msgspec.Struct, frozen=True, kw_only=True):
     """Hash of the record (`origin.ForkSource.hash`)."""
     seats: tuple[str, str]
     bots: tuple[str, str]
-    """Who plays the forks, by seat."""
+    """The bots that play the forks, by seat."""
     moments: tuple[MomentOdds, ...]
-    """In their order. If the match has a result, the last one is its end: chance 1, 0.5 or 0."""
+    """In order. If the match has a result, the last moment is its end, with chance 1, 0.5 or 0."""
 
 
 class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
@@ -60,7 +60,7 @@ class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ForkEngine(Protocol):
-    """What plays forks: processes of this machine (`studio.workers`)."""
+    """Plays forks in other processes, such as those of `simulate.workers`."""
 
     def submit(
         self, function: Callable[[ChanceJob], tuple[float, ...] | Phrase], job: ChanceJob, /
@@ -74,7 +74,7 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     file: str
     bots: tuple[str, str]
     forks: int
-    """Forks of each moment."""
+    """Number of forks of each moment."""
     step_s: float
     """Seconds of play between two moments."""
     arena: str | None = None
@@ -86,9 +86,9 @@ def compute_odds(
     """Compute the odds of a record.
 
     Args:
-        wish: which record, and which odds of it.
+        wish: the record, and how its odds are to be computed.
         engine: plays the forks.
-        known: odds from before; what still holds in them is not computed again.
+        known: odds that were kept; their forks are reused where they would go the same way.
         progress: told how many moments are done, and how many there will be at most.
 
     Yields:
@@ -160,7 +160,7 @@ class MatchCourse:
 def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
     """Play the forks of one moment, one after the other; return their margins.
 
-    An error that a user can correct is returned.
+    If a user can correct the cause of an error, return the error's phrase instead.
     """
     try:
         return tuple(_margins(job))
@@ -169,13 +169,13 @@ def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
 
 
 def key(source: ForkSource, beat: int, bots: tuple[str, str], arena: str | None = None) -> str:
-    """Return the hash of all that decides how the forks of a moment go.
+    """Return the hash of everything that decides how the forks of a moment go.
 
     Args:
         source: the record.
         beat: first beat that the forks play themselves.
-        bots: who plays them; a bot file and the record of a ghost count by their content.
-        arena: folder of the arena, if it is not installed; its files count.
+        bots: names of the bots; the contents of bot files and of ghosts' records are hashed.
+        arena: folder of the arena, if it is not installed; its files are hashed.
     """
     digest = hashlib.blake2b(digest_size=16)
     for topic, number, data in source.messages:
@@ -188,9 +188,9 @@ def key(source: ForkSource, beat: int, bots: tuple[str, str], arena: str | None 
 
 
 def margin(result: Result, seats: Sequence[str]) -> float:
-    """Return by how many points the first seat won.
+    """Return by how many points the first seat won; negative: it lost.
 
-    A seat that won by another rule than points counts as ahead by one point at least.
+    If a seat won by a rule other than points, its margin is at least one point.
     """
     points = float(result.scores[0] - result.scores[1])
     if result.computed == seats[0]:
@@ -223,7 +223,7 @@ def _margins(job: ChanceJob) -> Iterator[float]:
 def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
     """Return a recorded match as it was before a beat, and its save.
 
-    Forks change the match, so each of them begins with a load.
+    Each fork changes this match, so load the save into it before each fork.
     """
     before = opened_record(file).record.until(beat - 1)
     match = resume(before, folder=Path(arena) if arena else None).match

@@ -31,7 +31,7 @@ class Forked:
     beats: int
     """Beats that the fork played itself."""
     decided_beat: int | None
-    """Beat in which the change's decisions fell; None: it had none."""
+    """Beat with the decisions of the change; None: the change had no decisions."""
     changes: tuple[Phrase, ...]
     """Events that a take-back removed or made new."""
     left_out: int
@@ -56,8 +56,8 @@ def fork(
     Args:
         source: the record.
         beat: first beat that the fork plays itself, at most the one after the record's last.
-        change: how the fork differs from the record; None: it does not.
-        changes: the change in the words of the fork's record; None: the record does not say.
+        change: how the fork differs from the record; None: it has the same inputs.
+        changes: the change in the form of the fork's record; None: the record does not name it.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
         seconds: how long the fork goes on at most [s]; None: until play ends.
@@ -129,7 +129,7 @@ def _beats(line: ForkLine, journal: Journal) -> Iterator[tuple[Beat, list[Decisi
     """Play a fork; yield each beat with the replies to the decisions that the fork adds.
 
     Raises:
-        UserError: if the match refuses one of them.
+        UserError: if the match refuses one of these decisions.
     """
     while True:
         inputs = line.inputs()

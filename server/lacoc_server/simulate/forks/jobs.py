@@ -27,11 +27,11 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     take_back: int | None = None
     restart: tuple[str, ...] = ()
     scripts: dict[str, Script] = {}
-    """A key script, by seat id."""
+    """The key scripts by id of the seat, for seats that a script plays."""
     bots: tuple[str, ...] = ()
     """The bot of each seat, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
     variant: int = 0
-    """See `line.of_bot`."""
+    """Number that chooses the delays of the bots; see `line.of_bot`."""
     seconds: float | None = None
     match_id: str = "fork"
     folder: str | None = None
@@ -63,7 +63,7 @@ def play_fork(job: ForkJob) -> Forked:
 
 
 def attempt_fork(job: ForkJob) -> Forked | Phrase:
-    """Play a fork in a worker process; an error that a user can correct is returned."""
+    """Play a fork in a worker process; return the phrase of an error that a user can correct."""
     try:
         return play_fork(job)
     except UserError as error:
@@ -72,7 +72,7 @@ def attempt_fork(job: ForkJob) -> Forked | Phrase:
 
 @lru_cache(maxsize=1)
 def opened_record(file: str) -> ForkSource:
-    """Read a record; the one that was read last is kept, because many forks go on from it.
+    """Read a record; keep the newest one in memory, because many forks go on from it.
 
     Raises:
         UserError: as `origin.read_source` does.
@@ -92,7 +92,7 @@ def bots_of(source: ForkSource, names: tuple[str, ...], folder: Path | None) -> 
 
 
 def changes_of(job: ForkJob, source: ForkSource) -> ForkChanges:
-    """Return how a fork is made, as its record names it."""
+    """Return the changes of a fork in the form in which its record names them."""
     bots = dict(zip(source.seats, job.bots, strict=False))
     seats = tuple(
         ForkSeat(seat=seat, bot=_bot_name(bots.get(seat, "")), script=_script_name(job, seat))
@@ -104,7 +104,7 @@ def changes_of(job: ForkJob, source: ForkSource) -> ForkChanges:
 
 
 def _bot_name(bot: str) -> str:
-    """Return a bot's name for a record: where its file is concerns nobody who gets the record."""
+    """Return a bot's name for a record, without the private path of its file."""
     if bot == brains.RECORDED:
         return ""
     ghost = brains.GHOST if bot.startswith(brains.GHOST) else ""

@@ -1,4 +1,4 @@
-"""The inputs of a fork, beat by beat: recorded ones, and what a change puts in their place; pure.
+"""The inputs of a fork, beat by beat: recorded ones, and those that replace or add to them; pure.
 
 A change follows the rules of a court. An event can be taken back only in a halt, so a fork in play
 is halted and resumed for that. All inputs that were recorded later are delayed by the same time.
@@ -18,16 +18,16 @@ from lacoc_shared.seat import BEATS_PER_S, IN_PLAY, Phase
 from lacoc_shared.words import say
 
 REFEREE = "fork"
-"""Name of the referee who decides what a change asks for."""
+"""Referee's name in the decisions that a fork adds."""
 _SEARCH_BEATS = BEATS_PER_S
-"""A take-back waits at most this long for a beat without recorded inputs. If there is none, it
-comes in the first beat."""
+"""Beats in which a beat without recorded inputs is searched for a take-back. If there is none, the
+take-back comes in the first beat."""
 _SILENT_BEATS = BEATS_PER_S
-"""This long after the last recorded beat, seats with recorded keys fall silent, as at a court."""
+"""Beats after the last recorded one until seats with recorded keys fall silent, as at a court."""
 _LATE_TICKS = BEATS_PER_S
-"""Longest time before a bot sees its first frame, in a variant."""
+"""Longest time in a variant before a bot sees its first frame [ticks]."""
 _REACTION_TICKS = BEATS_PER_S // 5
-"""Longest time from a bot's choice of a key to its press, in a variant."""
+"""Longest time in a variant from a bot's choice of a key to its press [ticks]."""
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 Press = Callable[[Match, Frame], Key | None]
@@ -43,11 +43,11 @@ class ForkChange:
     restart: tuple[str, ...] = ()
     """Ids of the seats whose robots are put back at a start place."""
     players: Mapping[int, Callable[[], Press]] = field(default_factory=dict)
-    """Who plays a seat from now on, by its index; all others press their recorded keys."""
+    """New players of seats, by index of the seat; all other seats press their recorded keys."""
 
     @property
     def is_none(self) -> bool:
-        """True if nothing changes."""
+        """True if the fork has the same inputs as the record."""
         return self.take_back is None and not self.restart and not self.players
 
 
@@ -66,7 +66,7 @@ class ForkLine:
     ) -> None:
         self.match = match
         self.decided_beat: int | None = None
-        """Beat in which the change's decisions fell; None: they have not yet, or there are none."""
+        """Beat with the decisions of the change; None: it has not passed, or there are none."""
         self.left_out = 0
         """Recorded take-backs that were left out: they name events after the fork, which may have
         other numbers in it.
@@ -167,7 +167,7 @@ class ForkLine:
     def _decisions(self) -> Sequence[Input]:
         """Return the decisions of the change.
 
-        If they halt the match, all recorded inputs come later: note by how many beats.
+        If they halt the match, also note by how many beats the later recorded inputs are delayed.
         """
         match, change = self.match, self._change
         decisions: list[Decision] = []
@@ -207,7 +207,7 @@ def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
 
 
 class _BotPress:
-    """The keys of a bot."""
+    """Presses the keys of a bot, with the delays of a variant."""
 
     def __init__(self, bot: BotFactory, seat: int, variant: int) -> None:
         self._bot = bot

@@ -21,7 +21,7 @@ NEAR_S = 5.0
 """Neighbouring moments that are at most this far apart on the clock share their forks [s]."""
 _SPARE_S = 0.001  # differences of times are not exact
 _SLOW = 0.1
-"""Where less than this part of a swing happens in a stretch at its end, the swing ends before."""
+"""Stretches at the ends of a swing are cut off if each has less than this part of its change."""
 
 
 class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
@@ -32,7 +32,7 @@ class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
     clock_s: float
     """Seconds played until then."""
     margins: tuple[float, ...]
-    """Points of the first seat less those of the second, at the end of each fork."""
+    """Points of the first seat minus those of the second, at the end of each fork."""
     chance: float
     """Chance of the first seat to win, from 0 to 1; a draw counts half."""
     key: str = ""
@@ -55,7 +55,7 @@ def chance(margins: Sequence[float]) -> float:
     """Return the chance of the first seat to win one more fork, from 0 to 1.
 
     Args:
-        margins: how the forks ended, at least one (`MomentOdds.margins`).
+        margins: margin of each fork, at least one (`MomentOdds.margins`).
     """
     count = len(margins)
     mean = math.fsum(margins) / count
@@ -66,7 +66,7 @@ def chance(margins: Sequence[float]) -> float:
 
 
 def pooled(moments: Iterable[MomentOdds]) -> tuple[MomentOdds, ...]:
-    """Return moments in their order, with the chances that follow from all their forks.
+    """Return moments in order, with chances from their own forks and those of their neighbours.
 
     A little earlier or later, two bots go on from nearly the same position. So the forks of the
     moments before and after count too, if they are at most `NEAR_S` away. The end of the match
@@ -164,6 +164,6 @@ def highlights(moments: Sequence[MomentOdds], most: int = 8, least: float = 0.05
     Args:
         moments: moments of a match.
         most: largest number of stretches.
-        least: smallest change.
+        least: smallest change of the chance.
     """
     return [swing for swing in swings(moments) if abs(swing.change) >= least][:most]

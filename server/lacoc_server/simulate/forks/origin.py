@@ -1,4 +1,4 @@
-"""What a fork goes on from: a record up to a beat, under the fork's own name."""
+"""The part of a record from which a fork goes on, rewritten under the fork's own name."""
 
 import hashlib
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class ForkSource:
 
     record: Record
     messages: tuple[Message, ...]
-    """All its messages as they are in the file."""
+    """All messages of the record, as they are in the file."""
 
     @property
     def match_id(self) -> str:
@@ -107,7 +107,7 @@ def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | No
 
 
 def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | None) -> Setup:
-    """Return a fork's setup: nothing in it can be taken for the match that was played."""
+    """Return a fork's setup, without the court, match id and call of the match that was played."""
     was = source.record.header.setup
     origin = Origin(
         match_id=was.match_id or source.match_id,
@@ -125,7 +125,7 @@ def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | 
 
 
 def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
-    """Return the messages before a beat, but no health; they name the fork, not the match."""
+    """Return the messages before a beat, renamed for the fork, without measurements of health."""
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

@@ -69,7 +69,7 @@ class _ScriptPress:
         return pressed
 
     def _key(self, match: Match, name: str) -> Key | None:
-        """Return the key of a name; None if the name changes the level, or is not for the robot."""
+        """Return the key of a name in the script; None if it changes the level, or is no key."""
         assert self._level is not None
         if name.isdecimal():
             return Key(self._level, int(name))

@@ -23,16 +23,16 @@ from lacoc_shared.studio import CellChange, CellPlace, CoachReply, Progress, Rep
 from lacoc_shared.words import say
 
 _UNDO_TRIALS = 50
-"""About how many trials it takes to undo changes; used to tell the progress of this stage."""
+"""Typical number of trials to undo changes; the progress of this stage is estimated from it."""
 _TURNS = {Goal.LEFT: 1, Goal.RIGHT: 3}
 """The sample's keys for turning (workshop Fig. 4-2)."""
 
 Tell = Callable[[Progress], None]
-"""Takes the progress of a search; called many times a second."""
+"""Called with the progress of a search, many times a second."""
 
 
 class CoachFound(NamedTuple):
-    """What the coach found."""
+    """Result of a search of the coach."""
 
     repairs: list[Repaired]
     """Mistakes that were repaired before the search, in this order."""
@@ -54,8 +54,8 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
     Args:
         gait: the robot's gait.
         goal: what the key is for.
-        key: digit of the key. None: the goal says it. To turn, it is the sample's key for that
-            direction; to go forward, the key of `forward_key`.
+        key: digit of the key. None: choose it by the goal. To turn, it is the sample's key for
+            that direction; to go forward, the key of `forward_key`.
 
     Raises:
         UserError: if the gait has no such key at level B.
@@ -89,10 +89,10 @@ def task_of(
 
 
 def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Tell) -> CoachFound:
-    """Repair a table; else find which numbers matter, and search for a better table.
+    """Repair a table; if nothing needs repair, rank its numbers and search for a better table.
 
-    A repaired table is searched further only if all numbers may change: a person asks again then,
-    and understands one change after the other.
+    If a table was repaired, the search goes on only with the size "table". With a smaller size, the
+    student first sees the repair, and can ask again.
 
     Args:
         trials: tries tables for the task.

@@ -1,4 +1,4 @@
-"""Says which of the figures that a person sees became worse, so that nobody calls it better."""
+"""Finds which figures that a page shows became worse, so that such a table is not called better."""
 
 import math
 from typing import NamedTuple
@@ -10,19 +10,19 @@ from lacoc_server.trial.reasons.goal import Goal
 STRAIGHT_DEG_S = 3.0
 """A robot that turns at most this fast goes straight (docs/studio.md 3)."""
 _WALKS_SCORE = 15.0
-"""A table with a lower score has nothing yet that could become worse."""
+"""Below this score a robot does not yet walk; then only the figure of the goal is compared."""
 
 
 class ShownFigure(NamedTuple):
-    """A figure in sight."""
+    """A figure that a page shows, and how a loss of it is weighed."""
 
     name: str
     more: int
-    """1: more is better; -1: less is."""
+    """1: larger values are better; -1: smaller values are better."""
     step: float
-    """A smaller difference is not seen."""
+    """Largest loss that is ignored, because the shown digits hardly change."""
     cost: float
-    """What a unit is worth, on the scale of the score."""
+    """Points of the score that a loss of 1 costs."""
 
 
 _ALWAYS = (
@@ -41,12 +41,12 @@ _TURN = (ShownFigure("drift_deg_s", 1, 0.05, 3.0), *_ALWAYS)
 
 
 def worse(before: Figures, after: Figures, goal: Goal) -> tuple[str, ...]:
-    """Return the names of the figures that became worse, as they are shown."""
+    """Return the names of the figures that became worse by more than their `step`."""
     return tuple(one.name for one, loss in _losses(before, after, goal) if loss > one.step)
 
 
 def harm(before: Figures, after: Figures, goal: Goal, *, everything: bool) -> float:
-    """Return how much became worse, on the scale of the score; 0: nothing that could be seen.
+    """Return the cost of the figures that became worse, in points of the score; 0 if none did.
 
     Args:
         before: figures of a table.

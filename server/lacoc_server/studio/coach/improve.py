@@ -22,12 +22,12 @@ _POPULATION = 16
 _FEW = 24
 """The sizes "cell" and "three" try to change only this many numbers: those that matter most."""
 _CONFIRMED = 8
-"""How many of the tables with one more change, the best by rough score, are tried exactly."""
+"""Of tables with one more change, this many, the best by rough score, are tried exactly."""
 _HOPEFUL = 0.9
-"""A whole table is tried exactly only if its rough score is above this part of the best score. If
-the best score is negative, the rough score may be as far below it."""
+"""A table with all numbers changed is tried exactly only if its rough score is above this part of
+the best score. If the best score is negative, the rough score may be as far below it."""
 _HOPEFULS = 2
-"""At most this many whole tables of a round are tried exactly."""
+"""Most tables with all numbers changed that are tried exactly in a round."""
 
 
 class Size(StrEnum):

@@ -1,4 +1,4 @@
-"""Repairs a table before numbers are searched: tries in physics what would undo a mistake."""
+"""Repairs mistakes of a table before the search: tries in physics which repairs help."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -16,23 +16,23 @@ from lacoc_shared.words import Phrase
 
 MOST_REPAIRS = 3
 _TRIED, _EXACT = 12, 4
-"""So many repairs, the most probable, are tried roughly; the best of them and the most probable are
-tried exactly."""
+"""Number of repairs, the most probable ones, that are tried roughly in a round, and number of these
+(the most probable one and the best others) that are then tried exactly."""
 REPAIR_TRIALS = 1 + _TRIED + _EXACT
-"""Trials of a round."""
+"""Number of trials of a round: the table itself, rough ones and exact ones."""
 _LEAST, _LEAST_SHARE = 3.0, 0.05
-"""A repair must raise the score by this much, and by this share."""
+"""A repair must raise the score by this many points, and by this share of the score."""
 _AS_GOOD = 0.95
-"""Of repairs that are about as good as the best one, the most probable is taken."""
+"""Of the repairs with at least this share of the best score, the most probable is taken."""
 
 
 class Repaired(NamedTuple):
     """A repair that helped."""
 
     said: Phrase
-    """What was wrong; its code is `explain.*`."""
+    """The sentence that names the mistake; its code is `explain.*`."""
     cell: CellPlace
-    """A cell that was wrong."""
+    """A cell with a wrong number, as an example of the mistake."""
     angles_deg: Angles
     """The table after the repair."""
     before: Figures
@@ -79,7 +79,7 @@ def repair(trials: Trials) -> Iterator[Repaired]:
 
 
 def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
-    """Return the first table and the best others, in their order."""
+    """Return the first (most probable) table and the best others, in the given order."""
     ranked = sorted(range(1, len(tables)), key=lambda index: -scores[index])
     return [tables[index] for index in sorted([0, *ranked[: _EXACT - 1]])]
 
@@ -87,7 +87,7 @@ def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
 def _angles(table: KeyTable, form: KeyForm) -> Angles | None:
     """Return the angles of a table's rows [whole deg].
 
-    None: the key uses a row twice, and the repair gives it different angles.
+    Return None if the key uses a row twice, and the repair gives its uses different angles.
     """
     postures = np.round(form.angles_deg).astype(int).reshape(form.postures, -1)
     rows: dict[int, tuple[int, ...]] = {}

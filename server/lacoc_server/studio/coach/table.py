@@ -1,4 +1,4 @@
-"""A key's sequence as the rows of its gait file, with whole degrees in cells.
+"""The table of a key's sequence: the rows of its gait file, with whole degrees in the cells.
 
 In a Loco-data file each posture is a row with a digit. A sequence may use the same digit more than
 once; a change of the row then changes all these postures. In a LocoTra-data file each posture of a

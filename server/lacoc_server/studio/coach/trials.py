@@ -24,7 +24,7 @@ _CYCLES, _QUICK_CYCLES = 3, 2
 _ROUGH_STEPS, _ROUGH_CYCLES = 4, 1
 """A rough trial has physics steps of 5 ms and measures one cycle."""
 _MOST_AT_ONCE = 4
-"""Most trials in one job of a process; fewer would cost time, more would delay a stop."""
+"""Most trials in one job: small jobs take more time in all, large ones delay a stop."""
 _LOOK_S = 0.05
 
 
@@ -46,7 +46,7 @@ class Stopped(Exception):
 
 
 class Task(NamedTuple):
-    """The things that are the same in all trials of a search."""
+    """The robot, the table and the goal, which are the same in all trials of a search."""
 
     robot: RobotSpec
     stand: tuple[Posture, ...]
@@ -55,7 +55,7 @@ class Task(NamedTuple):
     """Table of the key that the search changes."""
     goal: Goal
     key: int
-    """Digit of this key, to name its cells."""
+    """Digit of the key of `table`, to name its cells."""
 
 
 class Trials:
@@ -106,7 +106,7 @@ class Trials:
         return self._scores(tables, _ROUGH_WAY)
 
     def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
-        """Return the figures of walks in trials as in `exact`; with `rough` true, as in `rough`.
+        """Return the figures of walks, tried as in `exact`; if `rough` is true, as in `rough`.
 
         Raises:
             Stopped: if the search was stopped.
@@ -115,10 +115,10 @@ class Trials:
         return self._walks(tables, _ROUGH_WAY if rough else _EXACT_WAY)
 
     def spare(self, table: Angles, *, everything: bool) -> None:
-        """Let no figure of a table become worse: what harms one has a lower score from now on.
+        """From now on lower the score of each table that makes a shown figure worse than this one.
 
         Args:
-            table: the table.
+            table: the table whose figures are compared.
             everything: as in `harm`.
 
         Raises:

@@ -14,10 +14,10 @@ from lacoc_server.studio.coach.search import Improved, Score, Search
 from lacoc_server.studio.coach.table import Angles, differing
 
 _EACH, _ALL = 0.02, 0.2
-"""Each undone change may cost the first part of the best score. All together may cost at most the
-second part of what the search has gained."""
+"""Each undone change may cost at most the first part of the best score. All undone changes together
+may cost at most the second part of what the search has gained."""
 _AT_ONCE = 8
-"""Most tables, each with another count of undone changes, that are tried in one round."""
+"""Most tables that are tried in one round; each has a different count of undone changes."""
 
 
 def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Improved]:

@@ -15,16 +15,16 @@ from lacoc_server.trial.reasons.goal import Goal
 _SPEEDS, _AROUSALS = 6, 5
 """Cells along each axis."""
 _SPEED_PART, _AROUSAL_PART = 1 / 15, 1 / 50
-"""Size of a cell, as a part of the speed that AngMin gives a foot at a leg's length. So the cells
-of the workshop's robot are 20 and 6 mm/s wide."""
+"""Size of a cell, as a part of the speed of a foot at a leg's length from a joint that turns with
+AngMin. So the cells of the workshop's robot are 20 and 6 mm/s wide."""
 _OWN_PART = 1 / 3
-"""A cell is at least this part of the own gait's value, so that the map reaches beyond it."""
+"""A cell's size is at least this part of the own gait's value, so that the map has faster gaits."""
 _STRAIGHT_DEG_S, _STRAIGHT_SIDE, _STRAIGHT_MM_S = 3.0, 0.25, 5.0
-"""A gait is straight if it turns no faster than the first, and goes sideways no faster than the
-second times its speed forward, or than the third."""
+"""A gait is straight if it turns no faster than the first. Its speed sideways may be at most the
+second times its speed forward, or the third if that is larger."""
 _UPRIGHT = 0.9
 _EQUAL_MM_S = 5.0
-"""Scores in the same step of this size count as equal; then the smaller change is better."""
+"""Scores are rounded down to multiples of this; of equal ones, the smaller change is better."""
 
 
 class MapPlace(NamedTuple):
@@ -75,7 +75,7 @@ class Elite(NamedTuple):
     angles_deg: Angles
     figures: Figures
     worth: tuple[float, float]
-    """The better of two gaits has the larger `worth`; see the function of this name."""
+    """Result of the function `worth`: of two gaits, the one with the larger value is kept."""
 
 
 def arousal_mm_s(figures: Figures) -> float | None:
@@ -102,7 +102,7 @@ def grid_of(robot: RobotSpec, own: Figures) -> MapGrid:
 
 
 def _whole(size_mm_s: float, step_mm_s: int) -> float:
-    """Round a size to whole steps, at least to one step [mm/s]."""
+    """Round a size to a multiple of the step, at least to one step [mm/s]."""
     return float(max(1, round(size_mm_s / step_mm_s)) * step_mm_s)
 
 
@@ -118,7 +118,7 @@ def is_straight(figures: Figures) -> bool:
 
 
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
-    """Return what a gait is worth: its score in coarse steps, then how little was changed."""
+    """Return the value by which gaits of a cell compete: rounded score, then the smaller change."""
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
     return math.floor(goal_score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 

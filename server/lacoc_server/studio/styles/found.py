@@ -1,4 +1,4 @@
-"""Describes a map of gaits, or variants of a gait, as a message."""
+"""Makes the messages that describe a map of gaits, or variants of a gait."""
 
 from collections.abc import Iterator
 
@@ -14,11 +14,11 @@ from lacoc_server.trial.figures import Figures
 from lacoc_shared.studio import GaitDifference, MapCell, MapReply, OtherGait, VariantsReply
 
 _SEEN = 0.4
-"""A difference of fewer steps can hardly be seen."""
+"""Least difference in a way that is told [steps]; a smaller one can hardly be seen."""
 
 
 def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
-    """Describe a map as a message."""
+    """Make the message that describes a map."""
     grid, styles = found.archive.grid, Styles(task.robot, task.table)
     return MapReply(
         key=key,
@@ -40,7 +40,7 @@ def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
 
 
 def variants_reply(task: Task, key: int, found: Varied) -> VariantsReply:
-    """Describe variants as a message."""
+    """Make the message that describes variants."""
     styles = Styles(task.robot, task.table)
     return VariantsReply(
         key=key,

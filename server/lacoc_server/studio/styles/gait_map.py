@@ -17,13 +17,13 @@ from lacoc_shared.studio import Progress
 _ROUND = 16
 """Tables that are tried roughly at the same time."""
 _STEPS = 1.4
-"""Standard deviation of the steps along each way that a new table takes."""
+"""Standard deviation of the change of a new table in each way (`Way`) [steps]."""
 _MIXED, _ALL_WAYS = 0.35, 0.25
-"""Share of the new tables that begin as a mix of two others, and share that is turned in all ways;
-the rest is turned in one to three."""
+"""Share of the new tables that begin as a mix of two others, and share that is changed in all ways
+(`Way`); the rest is changed in one to three ways."""
 _NOISY, _CELLS, _NOISE_DEG = 0.4, 0.3, 8.0
 """Share of the tables in which single angles change as well, the share of those angles, and the
-standard deviation of their changes."""
+standard deviation of their changes [deg]."""
 _FULL = 0.3
 """A cell's weight in the choice of a parent is this plus the number of empty cells beside it."""
 _HOPEFULS = 6
@@ -31,7 +31,7 @@ _HOPEFULS = 6
 
 
 class Mapped(NamedTuple):
-    """A map, as far as it was filled."""
+    """A map when its search has ended, perhaps with empty cells."""
 
     archive: Archive
     own: Figures
@@ -85,7 +85,7 @@ def fill(
 ) -> Iterator[None]:
     """Fill a map, one round after another, for ever; yield after each.
 
-    A rough trial finds the tables that may be better than the map's own. Only these are tried
+    A rough trial finds the tables that may be better than those in the map. Only these are tried
     exactly, and only an exact trial puts a table into the map.
     """
     rng = np.random.default_rng(seed)

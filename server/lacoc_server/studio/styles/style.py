@@ -1,8 +1,8 @@
-"""Turns a whole table in a direction that people see: a higher body, longer steps, a lean.
+"""Changes a whole table in a visible way: a higher body, longer steps, a lean.
 
-Each direction (`Way`) moves the feet of all postures together, seen from the body. The angles that
-put the feet there are found step by step from those of the table, so a foot that does not move
-keeps its angles. One step of each way is about as easy to see as one of another.
+Each way (`Way`) moves the feet of all postures together, seen from the body. The angles that put
+the feet there are found iteratively, beginning with those of the table, so a foot that does not
+move keeps its angles. The unit is a step: one step of each way is about equally visible.
 """
 
 import math
@@ -21,14 +21,14 @@ _SHIFT = 0.08
 """One step moves the body or the feet by this part of a leg's length (1st and 2nd link)."""
 _LEAN_RAD = math.radians(4.0)
 _FLAT = 0.02
-"""A lift or a stride below this part of a leg's length counts as this, so that it has a ratio."""
+"""Least lift or stride that is measured, as a part of a leg's length, so that ratios are finite."""
 _ROUNDS, _DAMPING = 5, 0.05
 """How the angles are found: rounds of damped least squares (Wampler 1986,
 10.1109/TSMC.1986.289285); the damping is a part of a leg's length."""
 
 
 class Way(StrEnum):
-    """A direction in which a walk can change."""
+    """A visible way in which a walk can change; this is its change in the positive direction."""
 
     HEIGHT = "height"
     """The body is higher above the floor."""
@@ -52,7 +52,7 @@ WAYS = tuple(Way)
 
 
 class Styles:
-    """Measures how tables of one key look, and turns them in the ways.
+    """Measures how tables of one key look, and changes them in the ways of `WAYS`.
 
     Args:
         robot: the robot.
@@ -130,7 +130,7 @@ class Styles:
         return tuple(angle + round(float(by)) for angle, by in zip(angles_deg, found, strict=True))
 
     def between(self, one: Angles, other: Angles, part: float) -> Angles:
-        """Mix two tables: part 0 is the first one, 1 the other one, and 2 lies beyond it."""
+        """Mix two tables linearly: `part` 0 gives the first, 1 the other, and 2 lies beyond it."""
         return self.within(np.array(one) + part * (np.array(other) - np.array(one)))
 
     def within(self, angles_deg: Floats) -> Angles:

@@ -16,15 +16,15 @@ from lacoc_shared.studio import Progress
 
 VARIANTS = 6
 _DRAWN, _TRIED, _ROUNDS = 80, 16, 4
-"""Count of tables that a round draws, count of those that it tries, and most rounds. A round tries
-the tables that differ most."""
+"""Number of tables that a round draws, number of these (the most different) that it tries, and most
+rounds."""
 _ENOUGH, _LEAST = 10, 8
-"""Most tables of a round that are tried exactly, and count of good gaits that ends the rounds."""
+"""Most tables of a round that are tried exactly, and number of good gaits that are enough."""
 _FAR, _NEAR = 2.0, 1.0
-"""Most steps of a way by which a table is turned, at the first request for variants and at late
-ones."""
+"""Most steps by which a table is changed in a way, at the first request for variants and after many
+requests."""
 _CALMER = 0.85
-"""Each round of trials turns tables by this part of the steps before, so that more robots stay
+"""Factor of the steps from one round of trials to the next: with smaller changes, more robots stay
 upright."""
 _WALKS = 0.25
 """A variant goes forward with at least this part of its slower parent's speed."""
@@ -65,7 +65,7 @@ def vary(
         parents: one or two tables.
         before: tables that were shown before; variants differ from them.
         seed: seed of all random numbers.
-        round_: how many rounds were before; later ones change less.
+        round_: number of earlier requests of the student; later ones change tables less.
         tell: called with the progress of the search.
 
     Raises:

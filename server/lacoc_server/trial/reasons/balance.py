@@ -1,4 +1,4 @@
-"""Finds when other parts than feet carry the robot or balance is lost, and a number behind it."""
+"""Finds when parts other than feet carry the robot, or balance is lost, and a number as cause."""
 
 import math
 from collections.abc import Iterator
@@ -15,12 +15,12 @@ from lacoc_shared.words import say
 
 _BELLY, _FALLS = 0.05, 0.1
 _CLEAR_M, _LOWER_M = 0.01, 0.003
-"""Feet that carry a body higher than the first are low enough. A number that would lower a foot by
-less than the second is not behind it."""
+"""If feet are lower than the body's underside by more than the first [m], they are low enough. A
+number that could lower a foot by less than the second [m] is not the cause."""
 
 
 def balance(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Say how often other parts than feet carry the robot, and how often balance is lost."""
+    """Yield findings: how often no foot or the belly carries the robot, or balance is lost."""
     figures = seen.figures
     hangs = seen.no_feet_share
     if min(hangs, figures.belly_share) > _BELLY:
@@ -46,8 +46,8 @@ def balance(seen: SeenTrial) -> Iterator[TrialFinding]:
 def _high_foot(seen: SeenTrial) -> TableCell | None:
     """Find the number that keeps a foot high in the posture in which the body rests most.
 
-    Only the lower half of the feet should carry. If they are low enough, the body rests for
-    another reason.
+    Only the lower half of the feet is expected to carry the body. If these feet are low enough,
+    the body rests on the floor for another reason: then return None.
     """
     walk, form, robot = seen.walk, seen.form, seen.robot
     rests = walk.other_load_n[seen.part] > DOWN_SHARE * walk.weight_n
@@ -73,7 +73,7 @@ def _high_foot(seen: SeenTrial) -> TableCell | None:
 
 
 def _foot_in_the_air(seen: SeenTrial) -> TableCell | None:
-    """Find the number that lifts the foot onto whose side the robot falls."""
+    """Find the number that lifts the foot on the side to which the robot falls."""
     walk, form, part = seen.walk, seen.form, seen.part
     down = walk.down[part]
     contact_w_m, centre_w_m = walk.contact_w_m[part], walk.centre_w_m[part]
@@ -106,5 +106,5 @@ def _foot_in_the_air(seen: SeenTrial) -> TableCell | None:
 
 
 def _most(seen: SeenTrial, ticks: Bools) -> int:
-    """Return the posture towards which the robot goes in most of these ticks of the span."""
+    """Return the index of the posture that is the target in most of these ticks of the span."""
     return int(np.bincount(seen.walk.posture[seen.part][ticks], minlength=1).argmax())

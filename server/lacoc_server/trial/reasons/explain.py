@@ -37,14 +37,14 @@ _TIPPED = 0.8
 _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 3.0, 20.0, 15.0
 _STILL_MM_S, _BACK_MM_S = 5.0, 5.0
 _SLIDES_MOST = 1.25
-"""Sliding is what a walk is about if the feet slide this many times as fast as the robot goes."""
+"""Sliding is told early if the feet slide more than this many times as fast as the robot goes."""
 _HANGS, _WHOLE, _LEG = 97.0, 95.0, 69.0
-"""Rank of the mistake in the table. What a leg does otherwise is told by its effect, if there is
-one (`legs`)."""
+"""Ranks of mistakes in the table: feet do not reach the floor, any other, one of a single leg. The
+last is low, so that an effect of the leg's mistake (`legs`) is told instead of it."""
 _RANKS = dict.fromkeys(("odd-joint", "odd-joint-sign", "odd-leg", "too-late", "too-early"), _LEG)
 _RANKS |= dict.fromkeys(("none-reaches", "few-reach"), _HANGS)
 _OPPOSED = 0.2
-"""The sides push in opposite directions if the weaker one has this part of the other's push."""
+"""The sides push in opposite directions if the weaker push is more than this part of the other."""
 
 
 def explain(
@@ -63,8 +63,8 @@ def explain(
         figures: figures of the trial.
         press: the key that was measured.
         sequence: postures of the key [rad].
-        before: digit and posture [rad] of the key of level A that was pressed before one of level
-            A; None: there was none.
+        before: if `press` is of level A: digit and posture [rad] of the key of level A that was
+            pressed before it; None: there was none.
 
     Returns:
         At most `MOST_SENTENCES` sentences, the most useful first.
@@ -87,10 +87,10 @@ def explain(
 
 
 def _mistake(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Name the mistake that the table most probably has, and what single legs do besides.
+    """Name the mistake that the table most probably has, and further mistakes of single legs.
 
-    What a leg would do right in the table without the mistake is no advice: it would lead away
-    from the repair.
+    A leg is not mentioned if it would do nothing wrong in the repaired table: advice about it would
+    lead away from the repair.
     """
     found = likely_mistake(seen.form)
     if found is not None and _rank(found) == _HANGS and seen.stands:
@@ -123,7 +123,7 @@ def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Say which of these are true: the robot turns, its feet slide, it goes forward."""
+    """Yield findings on motion: the robot hardly moves, goes back, turns, slides, walks."""
     figures = seen.figures
     if not figures.cycles:
         return

@@ -1,4 +1,4 @@
-"""A key's table, and what the partners of each number do.
+"""A key's table, and its comparison with the numbers of partners and mates.
 
 In a gait of two halves each leg does half a cycle later what the leg opposite to it does now: that
 is its **partner**. Its **mates** are the legs that do the same at the same time: every second leg,
@@ -21,11 +21,13 @@ from lacoc_shared.studio import CellPlace
 from lacoc_shared.words import Phrase, say
 
 SAME_DEG = 6.0
-"""Two angles that differ by at most this much are taken for the same."""
+"""Two angles that differ by at most this much [deg] count as equal."""
 _MATES = 0.25
-"""How much mates count that differ, if partners that differ count 1: mates often swing less."""
+"""Weight of differences between mates, if those between partners have the weight 1: mates often
+swing less than each other."""
 _OFFSET = np.array([1.0, 0.8, 0.8])
-"""How much of a constant difference between mates is usual: legs stand at different roots."""
+"""Part of a constant difference between mates that is ignored, for each level: legs stand at
+different angles."""
 _OPPOSITE_M = 0.005
 
 
@@ -34,7 +36,7 @@ class TableCell(NamedTuple):
 
     posture: int
     level: int
-    """Root 0, 1st 1, 2nd 2."""
+    """Index of the joint in its leg: Root 0, 1st 1, 2nd 2."""
     leg: int
 
 
@@ -106,19 +108,19 @@ class KeyForm:
 
     @property
     def paired(self) -> tuple[int, ...]:
-        """The levels in which partners and mates do the same: in a turn the roots do not."""
+        """Levels at which partners and mates should have equal numbers; in a turn not the roots."""
         return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)
 
     @cached_property
     def partners_deg(self) -> Floats:
-        """(postures, 3, legs) the partner of each number: opposite leg, half a cycle later."""
+        """(postures, 3, legs) angle of each number's partner: opposite leg, half a cycle later."""
         return np.roll(self.angles_deg, -self.half, axis=0)[:, :, ::-1]
 
     @cached_property
     def odd_deg(self) -> Floats:
-        """(postures, 3, legs) by how much each number differs from its partner, and its mates.
+        """(postures, 3, legs) weighted difference of each number from its partner and its mates.
 
-        Differences of at most `SAME_DEG` count 0.
+        Differences of at most `SAME_DEG` count as 0.
         """
         odd = np.zeros_like(self.angles_deg)
         levels = list(self.paired)
@@ -135,11 +137,11 @@ class KeyForm:
 
     @property
     def oddness_deg(self) -> float:
-        """By how much partners and mates differ, summed over the table."""
+        """The sum of `odd_deg` over the table."""
         return float(self.odd_deg.sum())
 
     def odd_cell(self, leg: int, level: int | None = None) -> TableCell:
-        """Return the number of a leg that differs most from what its partners do."""
+        """Return the cell of a leg that differs most from its partner and mates (`odd_deg`)."""
         odd = self.odd_deg[:, :, leg]
         if level is not None:
             odd = np.where(np.arange(JOINTS_PER_LEG) == level, odd, -1.0)
@@ -148,7 +150,7 @@ class KeyForm:
 
     @cached_property
     def thrust_m2(self) -> list[float]:
-        """For each leg the area that its foot goes around; positive: it pushes towards the goal."""
+        """For each leg the area that its foot encircles [m2]; positive: it pushes to the goal."""
         return [
             area * push
             for area, push in zip(

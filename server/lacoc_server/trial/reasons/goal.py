@@ -1,4 +1,4 @@
-"""What a key is for: to go forward, or to turn."""
+"""The purpose of a key: to go forward, or to turn."""
 
 from enum import StrEnum
 
@@ -18,15 +18,15 @@ class Goal(StrEnum):
 
 
 _MEANT = {1: Goal.LEFT, 2: Goal.FORWARD, 3: Goal.RIGHT}
-"""What the sample's keys are for (workshop Fig. 4-2)."""
+"""The goals of the sample's keys, by digit (workshop Fig. 4-2)."""
 _DOES = {"turn-left": Goal.LEFT, "turn-right": Goal.RIGHT}
 
 
 def goal_of(press: Press, figures: Figures) -> Goal:
     """Return what a key is probably meant to do.
 
-    The keys of the workshop have their meaning. Another key means what it does: it turns, or else
-    it should go forward.
+    The workshop's keys of level B have fixed goals. Any other key is meant to turn if the robot
+    turns with it, else to go forward.
     """
     if press.level is Level.LOCOMOTION and press.digit in _MEANT:
         return _MEANT[press.digit]

@@ -1,4 +1,4 @@
-"""Finds what one leg does otherwise than the others, and joints that jump or are at an end."""
+"""Finds legs that move differently from the others, and joints that jump or are at a limit."""
 
 import math
 import statistics
@@ -21,7 +21,8 @@ _MISSING = 1.5
 """In a cycle with an odd number of postures one is probably missing where the joints turn this many
 times as far as in any other step."""
 _STANDS, _STEP_M = 0.9, 0.005
-"""A foot that is down for this share of the time pushes, if it moves this far [m]."""
+"""A foot pushes the body if it is down for at least this share of the time and moves farther than
+this [m]."""
 _LIFT_M = 0.008
 """Legs are checked for dragging only if the median leg lifts its foot higher than this [m]."""
 _DRAGGED = 0.35
@@ -97,7 +98,7 @@ def missing_posture(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def half_cycle(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Find standing feet that push the body back, from one posture of level A to the next."""
+    """Find standing feet that push the body back when a key of level A follows another one."""
     if seen.before is None:
         return
     digit, posture = seen.before
@@ -164,7 +165,7 @@ def odd_legs(seen: SeenTrial) -> Iterator[TrialFinding]:
 def _out_of_step(seen: SeenTrial, steps: Steps, legs: Sequence[int]) -> Iterator[TrialFinding]:
     """Find the one leg of `legs` that is lifted at another time than all others.
 
-    Nothing is found if several legs are lifted alone.
+    Nothing is found if more than one leg is lifted at a time of its own.
     """
     if seen.form.postures < 3 or len(legs) < 4:
         return
@@ -198,7 +199,7 @@ def _turn(one: float, other: float) -> float:
 
 
 def _oddest(seen: SeenTrial, leg: int, usual: TableCell, levels: Sequence[int]) -> TableCell:
-    """Return the number of a leg that differs most from its partners'; else the usual one."""
+    """Return the cell of a leg that differs most from its partners; `usual` if none differs."""
     cells = [seen.form.odd_cell(leg, level) for level in levels]
     oddest = max(cells, key=lambda cell: seen.form.odd_deg[cell])
     return oddest if seen.form.odd_deg[oddest] > 0 else usual

@@ -10,22 +10,24 @@ from lacoc_server.trial.reasons.repairs import Repair, partner_repairs
 from lacoc_server.trial.reasons.shared import same_feet_repairs, shared_repairs
 
 _THRUST_DEG = 60.0
-"""What the largest thrust of all repaired tables is worth, on the scale of oddness."""
+"""Worth of the largest thrust of all repaired tables, on the scale of `KeyForm.oddness_deg`."""
 _WAY = 0.03
-"""What a degree that a joint turns costs: of two rows that differ, the wilder one is wrong."""
+"""Cost of each degree that a joint turns between rows: of two rows that differ, the one with larger
+motions is taken to be wrong."""
 _CLOSE = 24
-"""For so many repairs the thrust is computed: those whose tables are the least odd."""
+"""Number of repairs for which the thrust is computed: those whose tables are the least odd."""
 _SURE_DEG = 12.0
-"""A repair that is worth less is not sure."""
+"""A repair is sure only if it is worth more than this."""
 _LEFT = 0.5
-"""A sure repair of a part leaves at most this share of what can be repaired."""
+"""A repair of a part is sure only if it leaves at most this share of the oddness that the best
+repair takes away."""
 
 
 class Weighed(NamedTuple):
     """A repair, and how probable it is."""
 
     worth: float
-    """What is repaired and gained, minus how rare the mistake is; on the scale of
+    """Decrease of oddness, plus the gain in thrust, minus how rare the mistake is; on the scale of
     `KeyForm.oddness_deg`."""
     repair: Repair
     is_sure: bool
@@ -59,12 +61,12 @@ def weigh_repairs(form: KeyForm) -> list[Weighed]:
 
 
 def likely_mistake(form: KeyForm) -> Repair | None:
-    """Return the repair of the mistake that a table most probably has; None: none is sure."""
+    """Return the most probable sure repair of a table; None if no repair is sure."""
     return next((one.repair for one in weigh_repairs(form) if one.is_sure), None)
 
 
 def _strange_deg(form: KeyForm) -> float:
-    """Return how odd a table is, with a little for how far its joints turn."""
+    """Return the oddness of a table, plus `_WAY` for each degree that its joints turn."""
     angles = form.angles_deg
     way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())
     return form.oddness_deg + _WAY * way_deg

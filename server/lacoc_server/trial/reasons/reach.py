@@ -17,8 +17,8 @@ _RARE = 5
 def reach_repairs(form: KeyForm) -> list[Repair]:
     """List the repairs of a table in which too few feet ever reach the floor to stand on.
 
-    A table in which half of the feet reach it at some time has none: there a part is wrong, and its
-    partners are right.
+    Return no repair if half of the feet reach the floor at some time: then only a part of the table
+    is wrong, and `partner_repairs` lists its repairs.
     """
     steps = steps_of(form.robot, form.sequence)
     low = [leg for leg in range(form.legs) if any(steps.reaches[leg])]
@@ -43,7 +43,10 @@ def reach_repairs(form: KeyForm) -> list[Repair]:
 
 
 def _lowered(form: KeyForm, high: list[int], level: int, start_deg: Floats) -> Iterator[KeyForm]:
-    """Lower legs by one joint, or by both, until their lowest number is that of a stand."""
+    """Yield the table with the high legs lowered, by one joint and then by both.
+
+    Each joint is lowered until its lowest number is that of the start posture.
+    """
     for levels in ([level], [1, 2]):
         ix = np.ix_(range(form.postures), levels, high)
         angles = form.angles_deg.copy()

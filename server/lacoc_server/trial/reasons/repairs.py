@@ -1,7 +1,7 @@
 """Lists the changes that would repair a table, each with its reason.
 
-Each is one mistake of a beginner, undone: a sign, a number, a leg, a row, the order of rows, a
-side, or half of the cycle. It takes the numbers of the partners, which did not make this mistake.
+Each change undoes one mistake of a beginner: in a sign, a number, a leg, a row, the order of rows,
+a side, or half of the cycle. It takes the numbers of the partners, which do not have this mistake.
 """
 
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from lacoc_shared.gait.tables import LEVEL_NAMES
 from lacoc_shared.words import Phrase, say
 
 _LEAST_DEG = 8.0
-"""A smaller angle has no sign that matters."""
+"""The sign of an angle is not changed if the angle is smaller than this [deg]."""
 _COPIED_DEG = 2.0
 
 
@@ -23,16 +23,16 @@ class Repair(NamedTuple):
     """A change of a table, and the mistake that it would repair."""
 
     said: Phrase
-    """What is wrong; its code is `explain.*`."""
+    """The sentence that names the mistake; its code is `explain.*`."""
     cell: TableCell
-    """A cell that is wrong."""
+    """A cell with a wrong number, as an example of the mistake."""
     form: KeyForm
     """The repaired table."""
     rare: float
     """How improbable the mistake is before the table is seen, on the scale of
     `KeyForm.oddness_deg`."""
     leg: int = -1
-    """The leg with the mistake; -1: it is not one leg's."""
+    """Index of the leg with the mistake; -1: the mistake is not in a single leg."""
 
 
 def partner_repairs(form: KeyForm) -> Iterator[Repair]:
@@ -47,7 +47,7 @@ def partner_repairs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _cells(form: KeyForm) -> Iterator[Repair]:
-    """Give one number the other sign, or the number of its partner or of a mate."""
+    """Yield repairs of one number: the other sign, or the number of its partner or of a mate."""
     angles = form.angles_deg
     for at in np.ndindex(angles.shape):
         cell = TableCell(*at)
@@ -65,7 +65,7 @@ def _cells(form: KeyForm) -> Iterator[Repair]:
 
 
 def _legs(form: KeyForm) -> Iterator[Repair]:
-    """Give a joint of a leg, or a whole leg, its partner's numbers, a sign or a time."""
+    """Yield repairs of a joint or a whole leg: partner's numbers, other sign, other times."""
     angles, odd = form.angles_deg, form.odd_deg
     for leg in range(form.legs):
         if odd[:, :, leg].max() <= 0:
@@ -102,7 +102,7 @@ def _legs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _rows(form: KeyForm) -> Iterator[Repair]:
-    """Let two rows change places, or make a row again from its partner's."""
+    """Yield repairs of rows: two rows change places, or a row gets its partner's numbers."""
     angles = form.angles_deg
     for row in range(form.postures):
         for other in range(row + 1, form.postures):
@@ -137,7 +137,7 @@ def _rows(form: KeyForm) -> Iterator[Repair]:
 
 
 def _sides(form: KeyForm) -> Iterator[Repair]:
-    """Give a side the other side's numbers, or all roots of a side the other sign."""
+    """Yield repairs of a side: the other side's numbers, or the other sign at one joint level."""
     for side, name in ((1, "right"), (-1, "left")):
         legs = [leg for leg, spec in enumerate(form.robot.legs) if spec.side == side]
         levels: tuple[tuple[int, ...], ...] = ((0,), (1,), (2,), form.paired)
@@ -163,7 +163,7 @@ def _sides(form: KeyForm) -> Iterator[Repair]:
 
 
 def _halves(form: KeyForm) -> Iterator[Repair]:
-    """Make a half of the cycle the mirror of the other."""
+    """Yield repairs in which one half of the cycle becomes the mirror of the other half."""
     half = form.half
     for rows in (range(half, form.postures), range(half)):
         for level in ((0,), (1,), (2,), form.paired):
@@ -183,7 +183,7 @@ def _halves(form: KeyForm) -> Iterator[Repair]:
 
 
 def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Phrase:
-    """Make the part of a sentence that holds a number against its partner's."""
+    """Make the part of a sentence that compares a number with its partner's."""
     held = form.partner(cell) if partner is None else partner
     return say(
         "explain.odd",
@@ -195,7 +195,7 @@ def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Ph
 
 
 def _partners(form: KeyForm, cell: TableCell) -> Iterator[TableCell]:
-    """List the cells that should have the same number: the partner, then mates except of roots."""
+    """Yield the cells that should have the same number: the partner, then (not for roots) mates."""
     if form.half and cell.level in form.paired:
         yield form.partner(cell)
     if cell.level > 0:
@@ -205,7 +205,7 @@ def _partners(form: KeyForm, cell: TableCell) -> Iterator[TableCell]:
 
 
 def _alike(form: KeyForm, cell: TableCell, angle_deg: float) -> TableCell | None:
-    """Find the partner that has an angle, about; None: no partner has it."""
+    """Find a partner whose angle is about `angle_deg`; None if no partner has such an angle."""
     near = (
         one
         for one in _partners(form, cell)
@@ -215,14 +215,14 @@ def _alike(form: KeyForm, cell: TableCell, angle_deg: float) -> TableCell | None
 
 
 def _oddest(form: KeyForm, row: int, wanted_deg: Floats) -> TableCell:
-    """Return the number of a row that differs most from what it should be."""
+    """Return the cell of a row that differs most from the wanted angles."""
     apart = np.abs(form.angles_deg[row] - wanted_deg)
     level, leg = np.unravel_index(int(apart.argmax()), apart.shape)
     return TableCell(row, int(level), int(leg))
 
 
 def _with(form: KeyForm, at: Any, angles_deg: Floats | float) -> KeyForm:
-    """Return the table with other angles at some places."""
+    """Return the table with the angles at the indices `at` replaced."""
     angles = form.angles_deg.copy()
     angles[at] = angles_deg
     return form.changed(angles)

@@ -1,4 +1,4 @@
-"""What the rules look at, and what they find."""
+"""The trial that the rules of `explain` look at, and the findings that they return."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -34,7 +34,7 @@ class SeenTrial:
     form: KeyForm
     """The table of the measured key."""
     before: tuple[int, Posture] | None = None
-    """Digit and posture [rad] of level A from which the robot came to one of level A."""
+    """Digit and posture [rad] of the key of level A that came before a measured key of level A."""
 
     @property
     def part(self) -> slice:

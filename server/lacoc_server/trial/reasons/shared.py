@@ -1,4 +1,4 @@
-"""Finds the faults that all legs share, where no partner does it right, and their repairs."""
+"""Finds faults that all legs share, so that no partner has the right numbers, and their repairs."""
 
 from collections.abc import Iterator
 
@@ -13,22 +13,22 @@ from lacoc_shared.words import Phrase, say
 
 _SAME_DEG = 2.0
 _RADIANS = 2.0
-"""Angles that are all smaller than this are probably in radians, which no table has."""
+"""If all angles are smaller than this, they are probably in radians, but tables have degrees."""
 _SWING_M = 0.006
-"""A foot that swings less does not at all."""
+"""A foot whose swing is shorter than this counts as not swinging [m]."""
 _STEP_DEG = 20.0
-"""Root of a first step, forward and back."""
+"""Angle by which a repair turns the roots forward and back, for a first step [deg]."""
 _LIFTS_DEG = ((2, 40.0), (1, 25.0), (1, 40.0))
-"""Ways to lift a foot: the joint's level, and by how much."""
+"""Ways in which a repair lifts a foot: the joint's level, and the angle to add [deg]."""
 _AREA_M2 = 1e-4
 
 
 def same_feet_repairs(form: KeyForm) -> list[Repair]:
     """List the repair of a table in which the same feet carry the robot in all postures.
 
-    What these feet push they push back again. Postures are missing, and no number is wrong: the
-    repair leaves the table as it is. A table of four postures or more has a half that could be the
-    mirror of the other, which is another mistake.
+    When these feet swing back, they undo their push. The mistake is that postures are missing, not
+    that a number is wrong: so the repair has the same table. Tables with four or an even larger
+    number of postures are left out: in them a half that should mirror the other is the mistake.
     """
     steps = steps_of(form.robot, form.sequence)
     carries = steps.carries[0]
@@ -48,9 +48,9 @@ def same_feet_repairs(form: KeyForm) -> list[Repair]:
 
 
 def shared_repairs(form: KeyForm) -> Iterator[Repair]:
-    """List the repairs of a fault of all legs; only of the first fault that the table has.
+    """Yield the repairs of the first fault that all legs of the table share.
 
-    A table without such a fault has none.
+    Yield nothing if the table has no such fault.
     """
     angles = form.angles_deg
     if form.postures < 2:
@@ -100,7 +100,7 @@ def shared_repairs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _lift_signs(form: KeyForm) -> Iterator[Repair]:
-    """Give all numbers of the 1st or the 2nd joints the other sign, if that lifts the feet."""
+    """Yield repairs that change the sign of all 1st or all 2nd joints, if the legs then push."""
     angles = form.angles_deg
     start = form.start_deg
     for level in (1, 2):
@@ -121,7 +121,7 @@ def _lift_signs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
-    """Turn the order of the rows around, or the signs of all roots."""
+    """Yield two repairs: the other sign for all roots, and the rows in reverse order."""
     leg = int(thrust.argmin())
     cell = TableCell(steps_of(form.robot, form.sequence).swings_to(leg), 0, leg)
     angles = form.angles_deg
@@ -137,7 +137,7 @@ def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
 
 
 def _lifted(form: KeyForm, said: Phrase, cell: TableCell, rare: float) -> Iterator[Repair]:
-    """Lift half of the feet in half of the rows, the other feet in the others."""
+    """Yield repairs that lift half of the feet in half of the rows, then the other half."""
     angles = form.angles_deg
     half = form.postures // 2
     base = angles[:, 1:].min(axis=0)
@@ -152,7 +152,7 @@ def _lifted(form: KeyForm, said: Phrase, cell: TableCell, rare: float) -> Iterat
 
 
 def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
-    """Let the roots of each half of the feet swing back and forth, half a cycle apart."""
+    """Yield repairs in which the roots swing, one half of the feet half a cycle after the other."""
     half = form.postures // 2
     for begin in range(form.postures):
         swung = form.angles_deg.copy()
@@ -164,7 +164,7 @@ def _swung(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
 
 
 def _steps(form: KeyForm, said: Phrase, cell: TableCell) -> Iterator[Repair]:
-    """Make a first walk: from the robot's own stand, swing and lift half of the feet at a time."""
+    """Yield new tables: from the start posture, swing and lift half of the feet at a time."""
     flat = KeyForm(
         form.robot, np.repeat(form.start_deg[None], form.postures, axis=0), form.goal, form.digit
     )
