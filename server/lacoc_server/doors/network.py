@@ -46,7 +46,7 @@ _FETCHES_PER_BEAT = 8
 
 
 _Told = Done | Copied | Whereabouts | Outlook | TryOutReply
-"""Answers that do not concern the match."""
+"""Answers to requests that put nothing into the match."""
 _Judged = Input | _Told | Refusal
 _Later = Callable[[], _Judged | None]
 """A function that is called in each beat until it returns the outcome of a request."""

@@ -1,4 +1,4 @@
-"""A contest to see: eight bots in two groups and a knockout, on two courts."""
+"""The contest of `lacoc demo --contest`: eight bots in two groups and a knockout, on two courts."""
 
 import socket
 from pathlib import Path

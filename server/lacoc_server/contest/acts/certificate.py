@@ -96,7 +96,7 @@ def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]
 
 
 def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
-    """Return the contest file's bytes with the certificate's entries, and the contest in them."""
+    """Return the contest file with the certificate's entries, as bytes and as a `ContestFile`."""
     try:
         data = file.read_bytes()
         table = read_toml(data).get("contest", {})

@@ -75,9 +75,9 @@ class Desk:
         self._known = known
         self._games = book.where.games
         self._one = threading.Lock()
-        """Held while the book is used, but not during a weigh-in."""
+        """Lock that a thread holds while it uses the book, but not while it weighs files in."""
         self._publishing = threading.Lock()
-        """Held while the published folder is written."""
+        """Lock that a thread holds while it writes the published folder."""
         self._scales = threading.Semaphore(_WEIGHED_AT_ONCE)
 
     def judge(self, payload: bytes) -> Answer | Refusal:

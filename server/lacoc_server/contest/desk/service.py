@@ -43,7 +43,7 @@ class DeskService:
         self._session = open_desk([listen])
         self._session.answer(DESK, self._arrived)
         self.address = self._session.locators()[0]
-        """Where the desk is found."""
+        """Address of the desk, with the real port."""
 
     def __enter__(self) -> Self:
         return self

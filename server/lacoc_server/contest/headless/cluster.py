@@ -41,7 +41,7 @@ class Cluster:
         self._address = address
         self._tell = tell
         self._waiting: set[Future[PlayedAlone | Phrase]] = set()
-        """Games without an end; whoever takes one out ends it."""
+        """Futures of unfinished games; whichever thread removes one sets its result or error."""
         self._closed = Event()
 
     def __enter__(self) -> Self:

@@ -23,7 +23,7 @@ class EventCode:
         self._path = path
         try:
             self.value = path.read_text().strip()
-            """The code."""
+            """The code with which teams apply now."""
         except FileNotFoundError:
             self.value = first
         except (OSError, UnicodeDecodeError) as error:

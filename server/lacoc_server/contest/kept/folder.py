@@ -30,28 +30,28 @@ class ContestFolder:
         self.file = file
         self.contest = contests.load(file)
         self.plans = plans(self.contest, file)
-        """The stages, in their order, without an open one."""
+        """The stages in the order of the contest file, without the open stage."""
         self.open_stage = open_stage(self.contest, file)
         """The stage of open matches; None: there is none."""
         folder = file.resolve().parent
         self.facts = contests.facts_path(file)
-        """The database of facts."""
+        """File of the database of facts."""
         self.sheet = contests.sheet_path(file)
-        """The newest sheet, for pages."""
+        """File of the newest sheet, for pages."""
         self.applications = folder / f"{file.stem}.applications.db"
-        """The entries that wait for the organiser."""
+        """File of the entries that wait for the organiser."""
         self.secrets = contests.secrets_path(file)
-        """All tokens."""
+        """File of all tokens."""
         self.contacts = folder / f"{file.stem}.contacts.json"
-        """How to reach the teams."""
+        """File that says how to reach the teams."""
         self.published = contests.published_path(file).absolute()
-        """The published contest, if there is one; absolute, because people are told it."""
+        """Folder of the published contest, which may not exist yet; absolute, as people read it."""
         self.event_code = folder / f"{file.stem}.code.txt"
-        """The event code, if it was changed."""
+        """File of the event code; there is none until the code is changed."""
         self.stand_ins = folder / f"{file.stem}.stand-ins.txt"
-        """Names of the courts that have left their machine, and are run here since; one a line."""
+        """File with the courts that run here because their own machine was lost, a name a line."""
         self.machine = machine.path_of(self.facts)
-        """What this machine is to the contest, if it is not simply its office."""
+        """File with this machine's role in the contest; if there is none, it is the office."""
         self._lock = folder / f"{file.stem}.lock"
         self.entries = EntryFolder(
             (folder / contests.ENTRIES).resolve()

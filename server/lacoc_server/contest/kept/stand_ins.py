@@ -1,4 +1,4 @@
-"""The list of courts of other machines that now run on the office's, because theirs was lost.
+"""The list of courts that run on the office's machine because their own machine was lost.
 
 To give a court back to its own machine, an organiser removes its line while the court has no match.
 """

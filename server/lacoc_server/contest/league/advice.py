@@ -6,11 +6,11 @@ from lacoc_shared.messages import Event
 from lacoc_shared.words import Phrase, faults
 
 _MOST = 20
-"""A court has fewer reasons; a program that only pretends to be one may send any number."""
+"""Most reasons that are read: a court has fewer, but a program in its place may send any number."""
 
 
 def advice(events: Iterable[Event]) -> tuple[Phrase, ...]:
-    """Return why the court advised to play a match again at last; empty: it did not.
+    """Return the reasons of the court's newest advice to play the match again; empty: it gave none.
 
     Only reasons of the health verdict count (`health.*`), with the values that belong to them.
     """

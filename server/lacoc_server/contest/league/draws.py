@@ -119,7 +119,7 @@ def drawn_stages(
     played: set[tuple[str, str]] = set()
     """Each stage with each team that has played in it."""
     called: set[tuple[str, int]] = set()
-    """The games that a court has: pairing and number."""
+    """The games that are at a court, by pairing and number."""
     for fact in facts:
         if isinstance(fact, Called):
             called.add((fact.pairing, fact.game))

@@ -270,7 +270,7 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
     """Pairing of the match directly before which it is played; "": it keeps its place in the
     schedule."""
     not_before_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
-    """It is not called before this time, in milliseconds since 1970, UTC."""
+    """It is not called before this time, in milliseconds since 1970, UTC; 0: at any time."""
 
 
 class Paused(Fact, frozen=True, kw_only=True, tag="paused"):

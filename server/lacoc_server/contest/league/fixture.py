@@ -9,7 +9,10 @@ from lacoc_shared.words import Phrase, say
 
 
 def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
-    """Name a match or a game, as `fixture` does; one whose draw was taken back by its round.
+    """Name a match as `match_fixture` does, or one of its games as `fixture` does.
+
+    If the draw of its stage was taken back, the match is named by stage, group and round, and its
+    games are not named apart.
 
     Args:
         contest: the contest.
@@ -26,9 +29,9 @@ def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
 
 
 def _undrawn(contest: Contest, pairing: str) -> Phrase:
-    """Name a match of a stage that is not drawn now by stage, group and round, as its id has them.
+    """Name a match whose stage is not drawn now, by stage, group and round, as they are in its id.
 
-    A match of a stage that is not planned has its id as its name.
+    If the contest has no plan of the stage, the match is named by its id.
     """
     stage, _, place = pairing.partition(":")
     found = re.fullmatch(r"([a-z]*)([0-9]{1,4})\.[0-9]+", place)

@@ -224,7 +224,7 @@ def counting(
     games: dict[int, CountedGame] = {}
     called: dict[int, Called] = {}
     played: dict[int, tuple[Played, Called | None]] = {}
-    """By number: what was played, perhaps without a result that counts, and its call."""
+    """By number of the game: the fact of what was played, which may be void, and its call."""
     is_void = False
     absent: set[str] = set()
     for fact in facts:

@@ -32,7 +32,7 @@ class Rating(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     elo: float
-    """The mean of all teams is 0."""
+    """Strength of the team in Elo points; the mean of all teams is 0."""
     interval_elo: float
     """Half the width of the 95 % confidence interval, in Elo points."""
     games: int

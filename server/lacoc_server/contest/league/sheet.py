@@ -97,7 +97,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     ratings: tuple[Rating, ...]
     """The strongest first; teams that have played no game are not among them."""
     side_elo: float
-    """Advantage of the left side."""
+    """Advantage of the left seat, in Elo points."""
     unused: tuple[Unused, ...]
     """Facts that have no effect, each with the reason."""
 

@@ -71,7 +71,8 @@ class _Tally:
     def __init__(self, teams: Sequence[str], matches: Iterable[Counted]) -> None:
         self.seed = {team: place for place, team in enumerate(teams)}
         self.matches: dict[str, list[tuple[str, int, bool]]] = {team: [] for team in teams}
-        """By team: the opponent (NOBODY after a bye), the points (2, 1, 0), and whether played."""
+        """By team, for each of its matches: the opponent (NOBODY after a bye), the points (2, 1 or
+        0), and whether it was played."""
         self.won, self.drawn, self.lost = (dict.fromkeys(teams, 0) for _ in range(3))
         self.scored, self.conceded = (dict.fromkeys(teams, 0) for _ in range(2))
         for match in matches:

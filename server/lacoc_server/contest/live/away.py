@@ -112,7 +112,7 @@ class AwayCourt:
         self._tell = tell
         self._copy = RecordCopy(where.records, name)
         self._there: CourtLink | None = None
-        """The connection to the other machine; None until the first one."""
+        """The connection to the court on the other machine; None: there was none yet."""
         self._heard_s = time.monotonic()
         self._is_here = name in stand_ins(where.stand_ins)
         self._is_open_here = False

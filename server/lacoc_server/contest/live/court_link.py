@@ -119,7 +119,7 @@ class CourtLink:
     def __init__(self, session: Session, court: str, token: str, generation: int = 0) -> None:
         self.court = court
         self.is_superseded = False
-        """Whether the court has heard a later office."""
+        """Whether the court has refused a request because a later office had already asked it."""
         self._session = session
         self._token = token
         self._generation = generation
@@ -128,9 +128,9 @@ class CourtLink:
         self._healths = session.mailbox(self._keys.health, 1)
         self._heard_s: float | None = None
         self.health: Health | None = None
-        """The newest health."""
+        """The newest health message; None: none has come."""
         self.frame: Frame | None = None
-        """The newest frame: phase, clock and scores."""
+        """The newest frame, for phase, clock and scores; None: none has come."""
         self._sheet: _Fetched[Sheet] = _Fetched(session, self._keys.sheet, Sheet)
         self._events: _Fetched[tuple[Event, ...]] = _Fetched(
             session, self._keys.event, tuple[Event, ...]

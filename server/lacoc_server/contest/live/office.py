@@ -84,16 +84,16 @@ class Office:
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
         self._since_ms = _now_ms()
-        """From then on silent courts lose their games: before, nobody listened."""
+        """When this office began to listen; silence of a court before that costs it no game."""
         self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
         self._asked_ms: dict[str, int] = {}
-        """When a court was asked last, by the id of the call."""
+        """When a court was last asked about a call, by its id, in milliseconds since 1970, UTC."""
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self.contest: Contest = self._compute()
         self.known = OfficeKnowledge({name: SeenCourt(0) for name in links}, self._teller.pace, {})
-        """What it knew at the newest step; any thread may read it."""
+        """What the office knew at the newest step; any thread may read it."""
 
     @property
     def facts(self) -> Sequence[AnyFact]:

@@ -40,9 +40,10 @@ class OpenMatches:
         self._token_of = token_of
         self._tell = tell
         self._next: dict[str, str] = {}
-        """By court, the call of its next open match: as long as the court does not have it."""
+        """By court: the call of its next open match, until the court has this match."""
         self._over: dict[str, tuple[str, int]] = {}
-        """By court, the call of a match that is over, and since when."""
+        """By court: the call of a match that is over, and when that was seen, in milliseconds since
+        1970, UTC."""
         self._asked: dict[str, Asked[Done]] = {}
         self._asked_ms: dict[str, int] = {}
         self._refused: dict[str, Phrase] = {}

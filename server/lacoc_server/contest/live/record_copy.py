@@ -25,9 +25,9 @@ class RecordCopy:
         self._folder = folder
         self._court = court
         self._wanted: list[str] = []
-        """Ids of matches whose copies are not whole, in the order in which they are copied."""
+        """Ids of the matches whose records are still to be copied, the next one first."""
         self._asked: tuple[str, Asked[Copied]] | None = None
-        """A match, and the question for its next part."""
+        """The match whose next part was asked for, and the request; None: no answer is awaited."""
         self._next_s = 0.0
 
     @property

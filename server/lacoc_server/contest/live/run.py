@@ -37,16 +37,16 @@ from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
 _PAGES = ""
-"""Stands for the pages where names of courts are keys; no court has this name."""
+"""Key of the pages in dicts whose other keys are names of courts; no court has this name."""
 _STEP_S = 0.05
 """Time between two looks at the courts [s]."""
 _FAREWELL_S = 5.0
 """After the end the courts stay open for this long, so that all teams hear of it [s]."""
 _LATE_S = 30.0
-"""The same with several courts at real time [s]: pages that follow the director show the end 20 s
-later, and then the result."""
+"""With several courts at real time, they stay open for this long [s] in place of `_FAREWELL_S`:
+pages that follow the director show the end 20 s later, and then the result."""
 _COPY_S = 60.0
-"""After that, longest wait for the newest records of courts on other machines [s]."""
+"""Once that time is over, longest wait for the newest records of courts on other machines [s]."""
 _SHOWN_S = 60.0
 """A court on another machine shows the last match for this long [s]. Then the court closes it, so
 that its record can be copied whole."""
@@ -252,5 +252,8 @@ def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) 
 
 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
-    """Return whether the office may end, so long after the farewell: all records are here."""
+    """Return whether the office may end, `passed_s` after the courts' farewell.
+
+    It may if all records of courts on other machines are here, or have not come for `_COPY_S`.
+    """
     return passed_s > 0 and (passed_s > _COPY_S or all(one.is_copied for one in away))

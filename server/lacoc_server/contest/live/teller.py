@@ -67,18 +67,18 @@ class Teller:
         self.pace = ContestPace(0, 0, least_rest_ms)
         """How fast the contest goes, as of the newest estimate."""
         self.expected: dict[str, tuple[str, int]] = {}
-        """Where and when the next matches will probably begin, by pairing, as of it: times
-        are full minutes, so that they seldom change."""
+        """By pairing: where and when the next matches will probably begin, by the newest estimate.
+        Times are full minutes, so that they seldom change."""
         self._teams: dict[str, Whereabouts] = {}
         self._contest: Contest | None = None
         self._calls: tuple[str, ...] = ()
         self._waiting: tuple[str, ...] = ()
-        """The contest, the courts' calls and the teams that waited for the organiser, as they were
-        at the newest estimate."""
+        """These three are as of the newest estimate: the contest, the courts' calls, and the teams
+        that waited for the organiser."""
         self._looked_ms = 0
         self._first_ms = 0
         self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}
-        """When each court was told last, and what."""
+        """By court: when it was last told where the teams are, and what it was told."""
         self._asked: dict[str, Asked[Done]] = {}
 
     def tell(

@@ -161,7 +161,7 @@ class Bots:
         self._where = where
         self._addresses = addresses
         self._playing: dict[tuple[str, str], subprocess.Popen[bytes]] = {}
-        """By team and its files."""
+        """The running process of each bot, by team and hash of its files."""
         self._ending: list[subprocess.Popen[bytes]] = []
         self._begun_s: dict[str, float] = {}
 

@@ -65,7 +65,7 @@ class StandbyDoor:
         self._store = FactStore(where.facts)
         self._one = threading.Lock()
         self._asked_s: float | None = None
-        """When the second machine has asked last; None: never, or it was told as silent."""
+        """Monotonic time of the last request for a step [s]; None: there was none."""
         self._address = ""
         self._is_told = False
 

@@ -89,9 +89,9 @@ class Follower:
             *with_segments(where.records),
             *_missing(where.records, self._facts),
         }
-        """Ids of the matches whose records are not whole here."""
+        """Ids of the matches whose records are not complete here yet."""
         self._wrong_contest: str | None = None
-        """Hash of a contest file that can't be used here."""
+        """Hash of the office's contest file if it can't be used here; it is not fetched again."""
 
     def __enter__(self) -> Self:
         return self

@@ -65,7 +65,7 @@ class Other:
         Raises:
             NotThere: if nobody answers.
             OtherToken: if the other machine has another token.
-            LacksIt: if it has not what was asked for.
+            LacksIt: if the other machine does not have what was asked for.
         """
         sealed = self._sealing.seal(encode(request), REQUEST)
         try:

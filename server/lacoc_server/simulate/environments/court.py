@@ -31,7 +31,7 @@ Angles = npt.NDArray[np.float64]
 _FAR_M = 20.0
 """Bound of positions in the spaces [m]; the fields of LACOC are smaller."""
 _MOST = 1e4
-"""Bound of points, and of times without a limit."""
+"""Bound of points in the spaces."""
 
 
 class AgentCourt:

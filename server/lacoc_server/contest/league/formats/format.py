@@ -29,7 +29,10 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
         return f"{self.name}:{section}{round_number}.{number}"
 
     def order(self, usual: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the codes that rank the teams: points and the plan's tie-breaks, or `usual`."""
+        """Return the codes that rank the teams: points and the plan's tie-breaks.
+
+        If the plan names no tie-breaks, the codes are `usual`.
+        """
         return ("points", *self.settings.tie_breaks) if self.settings.tie_breaks else usual
 
 

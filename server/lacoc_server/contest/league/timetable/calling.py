@@ -38,7 +38,7 @@ class SeenCourt(NamedTuple):
     """The state of a court, as the office last heard it."""
 
     heard_ms: int
-    """When the court was heard last; 0: never."""
+    """When the court was heard last, in milliseconds since 1970, UTC; 0: never."""
     call: str = ""
     """Id of the call whose match the court has; "": none."""
     begun: bool = False

@@ -31,7 +31,7 @@ class Ticker:
     def __init__(self, facts: Sequence[AnyFact]) -> None:
         self._told = len(facts)
         self._there: dict[str, bool] = {}
-        """By court: whether it answered; a court that was never there is missing."""
+        """By court: whether it answered last time; a court that never answered is left out."""
         self._held: set[tuple[str, int]] = set()
         self._over = False
         self._to_draw = ""

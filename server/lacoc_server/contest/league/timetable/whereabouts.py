@@ -346,9 +346,9 @@ def starts(
     # What happened in the future did not: the machine's clock was set back since.
     team_ms = {t: end + rest_ms for t, (_, end) in contest.ended_ms.items() if end <= now_ms}
     opens = dict.fromkeys((view.name for view in contest.stages), 0)
-    """When each stage begins, at the earliest."""
+    """Earliest time of each stage, in milliseconds since 1970, UTC; 0: it is drawn already."""
     ends: dict[str, int] = {}
-    """When each match on a court, and each one yielded, probably ends."""
+    """By pairing: probable end of each match that is on a court or was yielded, also in ms."""
     for call in contest.running:
         view, match = _match(contest, call.pairing)
         end_ms = max(now_ms, min(call.at_ms, now_ms) + game)
