@@ -19,7 +19,6 @@ from lacoc_shared.record.reader import NoMatch, Record
 from lacoc_shared.seat import IN_PLAY
 from lacoc_shared.words import Phrase, say
 
-"""Phases in which a court halts its match after a restart, and when its disk fails or recovers."""
 _OPENING_BYTES = ASSIGN_MAX_BYTES + (1 << 14)
 """Size of a file [bytes] below which a file without a header is skipped: its court was killed while
 it opened the match. The bound is that large because a header has the files of both teams.

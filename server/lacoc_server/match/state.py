@@ -101,9 +101,9 @@ class MatchState:
         """
         self.next_wanted = False
         self.fault: Fault | None = None
+        """The fault that stopped physics in the newest tick; None: none did."""
         self.halted_by = THE_COURT
         """Whose decision halted the match last; `THE_COURT` for its own, and for a fault."""
-        """The fault that stopped physics in the newest tick; None: none did."""
         self.staging = Staging(self.arena, make_physics)
         self.event_count = 0
         """Number of the newest event in the log; the first is 1."""
