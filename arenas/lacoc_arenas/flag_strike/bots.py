@@ -52,7 +52,7 @@ class _Hunter(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def open(self, board: tuple[int, ...], marker: int) -> bool:
-        """Say whether this seat can gain a marker: a standing flag, or a corner not its own."""
+        """Say whether this seat can score at a marker: a standing flag, or a corner not its own."""
         return board[marker] == NEUTRAL or (marker < CORNERS and board[marker] != self.seat + 1)
 
     @abstractmethod

@@ -427,7 +427,7 @@ class Undrawable(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class DayState(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether games are called."""
+    """Whether the office gives games to courts now; if not, until when and why."""
 
     paused: bool
     """Whether no game is called until the organiser says so."""

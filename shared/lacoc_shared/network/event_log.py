@@ -31,10 +31,10 @@ class EventLog(Generic[T]):
         """Return whether events are missing here, or differ from those of the court.
 
         Args:
-            match: number of the open match, from the court's health.
-            beat: beat of that health.
+            match: number of the open match, from the court's `Health` message.
+            beat: beat of that message.
             number: number of the newest event at that beat, counted from 1 without a gap; 0: the
-                health does not have it.
+                message does not say it.
         """
         newest = self._known[max(self._known)][0] if self._known else None
         if newest is not None and len(self._known) <= newest.number - self._first:

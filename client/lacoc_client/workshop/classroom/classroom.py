@@ -342,7 +342,7 @@ class Classroom:
         await self._set(groups=tuple(self.groups.states.values()))
 
     def _handed(self, student: ClassStudent) -> Handed | None:
-        """Return the last table that was handed out to a student, to all or to the group.
+        """Return the table that a student was handed last, with the whole class or with the group.
 
         None: none was.
         """

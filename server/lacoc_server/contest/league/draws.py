@@ -200,9 +200,9 @@ def set_apart(
 ) -> tuple[str, ...]:
     """Change the order of teams as little as possible, so that fewer pairs clash.
 
-    Two teams at a time swap places, as long as that leaves fewer clashes. Swaps over a short
-    distance, and then of low places, are tried first. So after two groups the second-placed teams
-    swap, and the winners stay.
+    Two teams at a time swap places, as long as that leaves fewer clashes. Swaps of teams that are
+    close in the order are tried first; of equally close teams, those lower in the order. So the
+    best teams keep their seeds: after two groups the second-placed teams swap, not the winners.
 
     Args:
         entries: the teams by their seeding.
