@@ -448,6 +448,28 @@ def test_a_bomb_is_no_record(segment: Path, tmp_path: Path) -> None:
             Record.read(path)
 
 
+@pytest.mark.parametrize("chunked", [False, True])
+def test_a_message_without_a_whole_head_is_damage(
+    segment: Path, tmp_path: Path, chunked: bool
+) -> None:
+    """What follows such a message is never taken for its head, and of its chunk nothing is read."""
+    data = segment.read_bytes()
+    messages = [at for at, opcode in _records_of(data) if opcode == Opcode.MESSAGE]
+    first, second, third = messages[:3]
+    short = struct.pack("<BQ", Opcode.MESSAGE, 10) + data[first + 9 : first + 19]
+    hit = data[first:second] + short + data[second:third]
+    if chunked:
+        body = struct.pack("<QQQIIQ", 0, 0, len(hit), 0, 0, len(hit)) + hit
+        hit = struct.pack("<BQ", Opcode.CHUNK, len(body)) + body
+    path = tmp_path / "m.mcap"
+    path.write_bytes(data[:first] + hit + data[third:])
+    taken: list[tuple[str, int, bytes]] = []
+    stop = walk_bytes(path, lambda *message: taken.append(message))
+    assert stop is not None
+    assert stop.damaged
+    assert len(taken) == (0 if chunked else 1)
+
+
 def _event(number: int, data: dict[str, object]) -> Event:
     said = say("event.flip", team="Bees", marker="c1r1", also=("c1r2", "c1r3"))
     return Event(

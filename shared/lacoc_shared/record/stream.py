@@ -162,7 +162,7 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
                 topics[found.id] = found.topic
             elif opcode == Opcode.DATA_END:
                 checksum = DataEnd.read(_stream(source[first:last])).data_section_crc
-                if checksum not in (0, zlib.crc32(data[:at])):
+                if checksum and checksum != zlib.crc32(data[:at]):
                     return _damaged_data(data, end, count)
                 return _damaged_index() if _is_index_damaged(data, end) else None
             elif opcode == Opcode.HEADER and _profile(source[first:last]) != PROFILE:

@@ -125,6 +125,10 @@ def whereabouts(
         begins: when and where matches probably begin, by pairing, from `starts`.
     """
     calls = {team: call for call in contest.running for team in call.teams}
+    away = {
+        call.court: absent(call, courts.seen.get(call.court), pace.now_ms)
+        for call in contest.running
+    }
     coming = _coming(contest)
     found: dict[str, Whereabouts] = {}
     for team in contest.teams:
@@ -136,7 +140,6 @@ def whereabouts(
         elif not team.gone and name in coming:
             view, match = coming[name]
             start = begins.get(match.pairing.id)
-            away = () if start is None else _away(contest, courts, start.court, pace.now_ms)
             found[name] = _waits(contest, name, view, match, start, pace, away)
         elif not team.gone and may_come(contest, name):
             found[name] = Whereabouts(team=name, state="waits", said=_awaits_draw(contest))
@@ -205,7 +208,7 @@ def _waits(
     match: ContestMatch,
     start: ProbableStart | None,
     pace: ContestPace,
-    away: tuple[str, ...],
+    away: Mapping[str, tuple[str, ...]],
 ) -> Whereabouts:
     """Say what a team waits for, if its next match is known.
 
@@ -216,7 +219,7 @@ def _waits(
         match: the match.
         start: when it probably begins; None: nobody knows.
         pace: how fast the contest goes.
-        away: the teams for which the match's court waits now.
+        away: the teams that have not come to their game, by its court.
     """
     about = fixture(contest, view, match, max(1, match.next_game), stands=True)
     opponent = match.teams[match.teams[0] == team] or ""
@@ -226,8 +229,8 @@ def _waits(
     about_s: int | None = None
     if contest.day.paused:
         when = say("when.after-pause")
-    elif away:
-        when = say("when.absent", teams=away)
+    elif teams := away.get(start.court):
+        when = say("when.absent", teams=teams)
     else:
         about_s = _rounded_s(start.at_ms - pace.now_ms)
         when = _when(about_s)
@@ -433,12 +436,6 @@ def may_come(contest: Contest, team: str) -> bool:
 def _rounded_s(time_ms: int) -> int:
     """Round up to seconds in coarse steps, so that an estimate does not change at each look."""
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
-
-
-def _away(contest: Contest, courts: SeenCourts, court: str, now_ms: int) -> tuple[str, ...]:
-    """Return the teams that a court waits for, because they have not come to their game."""
-    calls = (call for call in contest.running if call.court == court)
-    return tuple(team for call in calls for team in absent(call, courts.seen.get(court), now_ms))
 
 
 def _when(about_s: int) -> Phrase:
