@@ -173,6 +173,7 @@ def glide(ground: arena.Arena, names: tuple[str, str], seed: int) -> tuple[int, 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["othello", "flag-strike"])
 @pytest.mark.parametrize(("weak", "strong"), [("straight", "nearest"), ("nearest", "planner")])
+@pytest.mark.long
 def test_ladder(name: str, weak: str, strong: str) -> None:
     """Of six matches, three from each seat, the stronger bot wins at least four."""
     ground = arena.load(name)

@@ -155,6 +155,7 @@ def test_what_a_partner_typed_is_foreign(room: ClassRoom, closing: ExitStack) ->
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_kill_9_in_the_middle_of_group_work_loses_nothing(
     tmp_path: Path, closing: ExitStack
 ) -> None:

@@ -82,6 +82,7 @@ def test_a_tournament_of_a_class(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_tournament_that_is_ended_early(tmp_path: Path) -> None:
     """After a kill or a stop the matches so far stay, and another tournament can begin."""
 

@@ -204,6 +204,7 @@ settings.match = {{ duration_s = 1.0, countdown_s = 0.1, start = "ready" }}
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_friends_play_match_after_match(tmp_path: Path) -> None:
     """Whoever has the link of a seat sits down with a name and files, and stays for the next one.
 

@@ -119,6 +119,7 @@ def test_tables_are_for_spreadsheets(played: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_commands_from_an_empty_folder_to_standings(
     tmp_path: Path, lacoc: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -109,7 +109,7 @@ def other_bots(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ("forgeries", "only", "seed"),
     [
         (8, (), 7),
-        (2, [contest_forging.AGAIN], 7),
+        pytest.param(2, [contest_forging.AGAIN], 7, marks=pytest.mark.long),
         pytest.param(15, (), 7, marks=pytest.mark.long(minutes=1)),
         pytest.param(15, (), 8, marks=pytest.mark.long(minutes=1)),
         pytest.param(4, [contest_forging.AGAIN], 8, marks=pytest.mark.long(minutes=1)),

@@ -168,6 +168,7 @@ def test_demo_says_where_its_page_is_early(tmp_path: Path) -> None:
     assert "The result is official." in done.stdout
 
 
+@pytest.mark.long
 def test_demo_without_a_head_opens_nothing(tmp_path: Path) -> None:
     """`lacoc demo --headless` opens no page."""
     words = ("demo", "--headless", "--seconds", "2", "--speed", "4")

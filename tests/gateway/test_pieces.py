@@ -136,7 +136,14 @@ def ask(venue: Venue, path: str) -> tuple[int, Message, bytes]:
         return error.code, error.headers, b""
 
 
-@pytest.mark.parametrize("picture", ["court", "court/main", "director", "aside"])
+@pytest.mark.parametrize(
+    "picture",
+    [
+        "court/main",
+        "director",
+        *(pytest.param(one, marks=pytest.mark.long) for one in ("court", "aside")),
+    ],
+)
 def test_a_gateway_serves_pieces(open_venue: Venue, picture: str) -> None:
     """A court and both pictures of the director come in pieces that a cache may keep for ever."""
     status, headers, data = ask(open_venue, f"{picture}/now.json")

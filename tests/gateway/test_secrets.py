@@ -20,7 +20,6 @@ from lacoc_shared.network.session import Session, open_client
 from lacoc_shared.seat import Phase
 
 KEYS = KeySpace("main")
-SETTINGS = "settings.match.countdown_s = 0.1\n"
 
 
 class HearingPage(PageClient):
@@ -38,7 +37,6 @@ class HeardVenue(Venue):
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         super().__init__(folder, stack)
-        self.contest.write_text(f"{self.contest.read_text()}{SETTINGS}")
         self.pages: list[HearingPage] = []
 
     def page(self, key: str | None = None, **options: object) -> HearingPage:

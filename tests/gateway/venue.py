@@ -24,6 +24,7 @@ class Venue:
         self.contest = folder / "contest.toml"
         self.contest.write_text(
             f'[court.main]\narena = "othello"\nlisten = ["tcp/127.0.0.1:{self.court_port}"]\n'
+            "settings.match.countdown_s = 1.0\n"
         )
         keep_tokens(self.contest, TOKENS, REFEREE)
 

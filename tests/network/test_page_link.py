@@ -19,7 +19,8 @@ from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_shared.contest.access import Access
-from lacoc_shared.inputs import HeardSeat, KeySeat, SilentSeat
+from lacoc_shared.inputs import HeardSeat, JoinSeat, KeySeat, SilentSeat
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Session
 from lacoc_shared.seat import FRESH_BEATS
 
@@ -84,6 +85,29 @@ def test_the_court_gets_the_frame_that_the_page_showed(court: CourtStub) -> None
 
 
 @pytest.mark.slow
+def test_a_page_that_gives_a_seat_up_at_once_still_gets_the_answer_to_its_join(
+    court: CourtStub,
+) -> None:
+    """A join that was ended before the court was asked is refused; no page waits for ever."""
+
+    async def answers() -> list[object]:
+        viewer = Viewer(_Socket())  # type: ignore[arg-type]
+        seat = PageSeat(viewer, Answers(viewer, print), None, lambda *_, **__: None)
+        told: list[object] = []
+        ask = wire.JoinAsk(id=1, seat="left", token=TOKENS["left"], name="Ants")
+        way = Access(court="main", connect=court.address)
+        seat.join(ask, way, lambda value, error: told.append(value or error))
+        seat.leave()
+        async with asyncio.timeout(LIMIT_S):
+            while not told:
+                await asyncio.sleep(0.005)
+        return told
+
+    (answer,) = run_async(answers)
+    assert isinstance(answer, UserError)
+    assert not any(isinstance(one, JoinSeat) for one in court.inputs)
+
+
 def test_repeats_name_no_frame_that_the_player_did_not_see(
     court: CourtStub, session: Session
 ) -> None:

@@ -145,7 +145,7 @@ def test_a_match_by_touch_alone(venue: Venue, sit: Sit) -> None:
     judge.page.keyboard.type("Kim")
     judge.find(".enter button[type=submit]").tap()
     judge.find(BIG).tap()
-    judge.is_toasted("Play begins in 3 seconds.")
+    judge.is_toasted("Play begins in 1 second.")
     assert covered(judge.page, ".toast", "button, .clock, .phase, .score-bug") == []
     page.phase(Phase.PLAYING)
     page.find('.key[data-key="2"]').tap()

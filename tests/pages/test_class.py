@@ -216,6 +216,7 @@ def test_projector_mode_hides_names_everywhere(
     expect(desk.find(desk.card("Evangeline"))).to_be_focused()
 
 
+@pytest.mark.long
 def test_the_page_goes_on_after_the_gateways_end(
     open_page: OpenPage, built_pages: Path, tmp_path: Path, closing: ExitStack, console: Any
 ) -> None:

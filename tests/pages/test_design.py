@@ -260,6 +260,7 @@ def test_the_coach_works_and_can_be_stopped(
     page.sees(".coach >> text=Which numbers matter?")
 
 
+@pytest.mark.long
 def test_the_coach_repairs_a_wrong_sign(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:
@@ -380,10 +381,10 @@ def test_a_foot_is_moved_in_the_picture(open_page: OpenPage, address: tuple[str,
     assert [page.cell(1, col) for col in range(18)] == before
 
     box = foot.bounding_box()
-    page.page.wait_for_timeout(300)
+    page.page.wait_for_timeout(1000)
     while box != (now := foot.bounding_box()):  # the camera comes to rest
         box = now
-        page.page.wait_for_timeout(300)
+        page.page.wait_for_timeout(1000)
     assert box
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     mouse = page.page.mouse

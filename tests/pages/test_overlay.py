@@ -238,6 +238,7 @@ def test_the_document_has_every_flag() -> None:
     assert told == read
 
 
+@pytest.mark.long
 def test_a_phone_can_read_it(venue: Venue, open_page: OpenPage) -> None:
     """In an upright window of a phone the letters are large enough, and nothing is cut off."""
     venue.court("--seconds", "2")

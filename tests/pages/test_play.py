@@ -504,6 +504,7 @@ def moved_m(before: Frame, after: Frame | None, seat: int) -> float:
     return float(np.hypot(*(places[1] - places[0])))
 
 
+@pytest.mark.long
 def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
     """Space changes the view, a lost focus is shown, and keys work with a Japanese input method."""
     page = seated(venue, sit)
@@ -545,6 +546,7 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_a_newcomer_is_told_what_matters(venue: Venue, sit: Sit) -> None:
     """Before play the page says which robot is one's own, how one scores, and what keys do."""
     page = seated(venue, sit)
@@ -581,6 +583,7 @@ def test_a_newcomer_is_told_what_matters(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_a_screen_reader_hears_the_time(venue: Venue, sit: Sit) -> None:
     """One live region of the page says the time at 60, 30 and 10 seconds, and each new score."""
     page = seated(venue, sit, "--seconds", "11")
@@ -591,6 +594,7 @@ def test_a_screen_reader_hears_the_time(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_files_are_told_once(venue: Venue, sit: Sit) -> None:
     """Who comes back into a match is not told again that no files were sent."""
     page = seated(venue, sit, "--seconds", "60")
@@ -604,6 +608,7 @@ def test_files_are_told_once(venue: Venue, sit: Sit) -> None:
     other.close()
 
 
+@pytest.mark.long
 def test_the_key_test_and_the_language(venue: Venue, sit: Sit) -> None:
     """The key test in the settings shows what each key does; the language changes at once."""
     page = seated(venue, sit)

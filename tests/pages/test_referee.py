@@ -166,6 +166,7 @@ def test_a_replay_is_advised(venue: Venue, referee: Referee) -> None:
     expect(advice).to_be_visible()
 
 
+@pytest.mark.long
 def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> None:
     """The referee makes each kind of decision on the page, and the log shows each."""
     page = at_the_desk(referee())
@@ -184,9 +185,9 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     court.contestant("right", "Bees")
     phase(page, 2)
     step(page, "Control+Enter")
-    log_has(page, "Referee Kim: play begins in 3 seconds.")
+    log_has(page, "Referee Kim: play begins in 1 second.")
     expect(page.locator(".answer.yes")).to_have_text(
-        re.compile(r"^✓ Done Play begins in 3 seconds\. [1-9]\d* s ago$")
+        re.compile(r"^✓ Done Play begins in 1 second\. [1-9]\d* s ago$")
     )
     phase(page, 4)
     expect(page.locator(".answer")).to_have_count(0)  # it was of another phase
@@ -239,7 +240,7 @@ def test_every_decision_to_official_and_next(court: Venue, referee: Referee) -> 
     confirm(page, "rule")
     log_has(page, "600 seconds taken from the match.")
     step(page)
-    log_has(page, "Referee Kim: play goes on in 3 seconds.")
+    log_has(page, "Referee Kim: play goes on in 1 second.")
     phase(page, 6)
     # After the end of play.
     group(page, "Draw").click()

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from contestant import Contestant, Sit
 from court_stub import TOKENS, CourtStub
@@ -16,10 +17,11 @@ from playwright.sync_api import Error, expect
 from ports import free_port
 from show import violations
 from venue import Venue
-from waiting import LIMIT_S
+from waiting import LIMIT_S, until
 
 from lacoc_server.contest.acts.organiser import enter
 from lacoc_shared import seal
+from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
@@ -46,7 +48,6 @@ listen = ["127.0.0.1:{free_port()}"]
     file.write_text(f"""
 [contest]
 name = "Spring Cup"
-pages = "http://{where}"
 least_rest_s = 3.0
 {courts}
 [stage.league]
@@ -172,3 +173,35 @@ def test_a_team_that_plays_no_more_reads_why_and_is_not_alarmed(
         player.sees(".entrance .coming", "Final: Bees did not come. Reason: not seen since noon")
         player.misses(".banner")
     player.sees(".banner.calm", "Its court does not answer now.")
+
+
+def test_a_seat_that_the_court_refuses_is_told_and_asked_for_again(venue: Venue, sit: Sit) -> None:
+    """The card says why the team has no seat yet; the page goes on asking without a person."""
+    there = Whereabouts(
+        team="Nobody",
+        state="court",
+        said=say(
+            "team.plays", court="main", seat="left", opponent="Bees", fixture=say("fixture.open")
+        ),
+        court="main",
+        seat="left",
+        call="c1",
+    )
+    with CourtStub(f"127.0.0.1:{venue.court_port}") as court:
+        court.show(court.scene, call="c1")
+        court.teams.tell({seal.hash_token(TOKENS["left"], bytes(16)): there})
+        venue.web()
+        player = sit(venue.url)
+        player.open(token=TOKENS["left"])
+        player.sees(".entrance[data-state=court] [role=alert]", "the match is being played")
+        asked = joins(court)
+        until(lambda: joins(court) > asked)
+        # The court lets the team in from here on.
+        there = msgspec.structs.replace(there, team="Ants")
+        court.teams.tell({seal.hash_token(TOKENS["left"], bytes(16)): there})
+        player.stands("seated")
+
+
+def joins(court: CourtStub) -> int:
+    """Count how often a team has asked for a seat."""
+    return sum(isinstance(one, JoinSeat) for one in court.inputs)

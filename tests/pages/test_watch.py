@@ -36,6 +36,7 @@ def on_clock(text: str) -> int:
     return 60 * int(minutes) + int(seconds)
 
 
+@pytest.mark.long
 def test_a_late_spectator_has_everything_at_once(venue: Venue, open_page: OpenPage) -> None:
     """A late spectator sees the court's score, clock, board and log, and captions of new events."""
     venue.court()

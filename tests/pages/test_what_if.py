@@ -101,6 +101,7 @@ def test_a_fork_says_so_and_stands_beside_its_match(library: Venue, open_page: O
     show.misses(".scene.two")
 
 
+@pytest.mark.long
 def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page: OpenPage) -> None:
     """The page plays a fork from the beat that it shows, and shows it beside its match."""
     page = open_page(viewport={"width": 1366, "height": 768})

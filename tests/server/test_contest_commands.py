@@ -180,6 +180,25 @@ def test_referees_and_staff_are_invited_too(tmp_path: Path) -> None:
     assert "referee of court main-1" in run("invite", "--contest", str(file), "--staff")
 
 
+def test_invitations_lead_to_where_the_contest_was_opened_last(tmp_path: Path) -> None:
+    """Links of a contest file without `pages` have the port of the last run, also with --host."""
+
+    def pages(*words: str) -> str:
+        given = run("invite", "--contest", str(file), "--staff", "--json", *words)
+        (link,) = json.loads(given)["referee"].values()
+        return str(Link.read(link).pages)
+
+    file = tmp_path / "contest.toml"
+    run("init", str(file))
+    assert pages().endswith(":8080")
+    contests.pages_path(file).write_text("http://192.168.1.20:9000")
+    assert pages() == "http://192.168.1.20:9000"
+    assert pages("--host", "hall.local") == "http://hall.local:9000"
+    text = file.read_text()
+    file.write_text(text.replace("[contest]", '[contest]\npages = "https://cup.test"', 1))
+    assert pages() == "https://cup.test"
+
+
 def test_a_court_needs_a_name_that_fits_a_key(tmp_path: Path) -> None:
     """A court's name that can't be part of a key expression is refused, and no file is written."""
     with pytest.raises(UserError, match="Main Hall"):

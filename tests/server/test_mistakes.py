@@ -45,7 +45,15 @@ def test_the_first_sentence_names_a_beginners_mistake(index: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["zeros", "2nd -40", "rows 2, 3 changed", "left Roots' signs"])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        "zeros",
+        "2nd -40",
+        pytest.param("rows 2, 3 changed", marks=pytest.mark.long),
+        pytest.param("left Roots' signs", marks=pytest.mark.long),
+    ],
+)
 def test_the_coach_repairs_a_beginners_mistake(kind: str) -> None:
     """What the coach repairs, in physics, brings back nine tenths of the lost speed."""
     found = repaired(*next(one for one in BEGINNERS if one[0].kind == kind))

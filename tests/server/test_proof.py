@@ -129,6 +129,7 @@ def test_a_fingerprint_names_the_machine() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_honest_records_are_the_same(paths: Sequence[Path]) -> None:
     """The verdict on an honest record is "same", even if the record has no fingerprint."""
     for path in paths:

@@ -70,6 +70,7 @@ def test_a_killed_court_goes_on(contest: Path, folder: Path) -> None:
 
 
 @pytest.mark.usefixtures("has_other_arithmetic")
+@pytest.mark.long
 def test_a_killed_court_goes_on_with_another_arithmetic(contest: Path, folder: Path) -> None:
     """A killed match goes on with another arithmetic; an event says that the arithmetic changed.
 

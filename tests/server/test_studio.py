@@ -380,6 +380,7 @@ def test_a_search_with_wrong_wishes_is_refused(asker: Asker) -> None:
         assert asker.refusal("coach", request).why.code == code
 
 
+@pytest.mark.long
 def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
     """A studio fills a map of gaits, and makes new variants of the tables that a user keeps.
 
@@ -440,6 +441,7 @@ def test_nobody_else_speaks_for_a_studio(asker: Asker) -> None:
         assert heard.take() is None
 
 
+@pytest.mark.long
 def test_the_longest_trial_of_the_largest_robot(asker: Asker) -> None:
     """An octopod's longest trial has the largest possible reply, and this reply arrives."""
     reply = asker.trial(files_of("octopod"), seconds=60.0)

@@ -119,6 +119,7 @@ def load(source: str) -> None:
         ),
     ],
 )
+@pytest.mark.long
 def test_a_bot_that_nothing_interrupts_is_named(
     monkeypatch: pytest.MonkeyPatch, source: str, says: str
 ) -> None:

@@ -156,6 +156,15 @@ def facts_path(path: Path) -> Path:
     return path.resolve().with_suffix(".db")
 
 
+def pages_path(path: Path) -> Path:
+    """Return the path of the file with the address at which a contest last had its pages.
+
+    `contest run` writes it, beside the contest file.
+    """
+    path = path.resolve()
+    return path.with_name(f"{path.stem}.pages.txt")
+
+
 def secrets_path(path: Path) -> Path:
     """Return the path of the file with all tokens of a contest, beside the contest file."""
     path = path.resolve()

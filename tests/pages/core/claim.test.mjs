@@ -215,6 +215,18 @@ test("a lost seat is told, and only a person asks for it again", () => {
   assert.equal(after(seated, leave, taken, released).state, "lost");
 });
 
+test("a match that is taken back while its seat is asked for leaves nothing behind", () => {
+  const asked = after(fresh, join, open);
+  const forgotten = after(asked, forget);
+  assert.deepEqual([forgotten.state, forgotten.wish], ["none", null]);
+  assert.deepEqual(forgotten.effects, ["drop"]);
+  // The gateway ended that seat with the match: its answer grants nothing, whenever it comes.
+  assert.equal(after(forgotten, granted).state, "none");
+  const again = after(forgotten, { is: "join", wish: other }, granted);
+  assert.deepEqual([again.state, again.wish, again.request], ["joining", other, "none"]);
+  assert.deepEqual(after(again, open).effects, ["ask"]);
+});
+
 test("which refusals are final", () => {
   assert.deepEqual([busy, no, wrongToken, badFile].map(isFinal), [false, false, true, true]);
   assert.ok(isFinal({ why: { code: "refused.files-too-large" }, mistakes: [] }));

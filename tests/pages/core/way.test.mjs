@@ -8,7 +8,7 @@ const called = { state: "court", court: "north", seat: "left", call: "c1" };
 const waits = { state: "waits", court: "south", seat: "", call: "" };
 const fresh = {
   ...{ there: waits, court: "north", call: "", seat: "", mine: "", seen: false },
-  lost: false,
+  gone: false,
   driven: false,
 };
 const playing = { ...fresh, there: called, call: "c1", seat: "left", mine: "c1" };
@@ -26,7 +26,13 @@ const TABLE = [
   ["is called to another court", { ...fresh, there: { ...called, court: "south" } }, "go"],
   ["has joined", { ...playing, mine: "" }, "hold"],
   ["plays", playing, "stay"],
-  ["has left, and comes back by a button", { ...playing, seat: "" }, "stay"],
+  ["has left, and comes back by a button", { ...playing, seat: "", gone: true }, "stay"],
+  ["has no seat any more because the court refused it", { ...playing, seat: "" }, "join"],
+  [
+    "has left a match that is over, and the result was seen",
+    { ...playing, there: waits, seat: "", gone: true, seen: true },
+    "rest",
+  ],
   ["has played, and the result is on the screen", { ...playing, there: waits }, "stay"],
   ["has played, and the result was seen", { ...playing, there: waits, seen: true }, "rest"],
   ["has played, and another match is open", { ...playing, there: waits, call: "c2" }, "rest"],
@@ -51,10 +57,10 @@ const TABLE = [
     { ...playing, there: { ...called, seat: "right", call: "c2" }, call: "c2" },
     "join",
   ],
-  ["has lost its seat to another window", { ...playing, seat: "", lost: true }, "stay"],
+  ["has lost its seat to another window", { ...playing, seat: "", gone: true }, "stay"],
   [
     "has lost its seat because the office took the match back",
-    { ...playing, there: waits, call: "c2", seat: "", lost: true },
+    { ...playing, there: waits, call: "c2", seat: "", gone: true },
     "rest",
   ],
   ["is out", { ...fresh, there: { ...waits, state: "out" } }, "stay"],

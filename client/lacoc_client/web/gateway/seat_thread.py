@@ -108,7 +108,7 @@ class SeatThread:
                     elsewhere=True,
                 )
                 if self._ended:  # the page has gone: it must not take the seat from another one
-                    return
+                    raise UserError(say("gateway.no-seat"))
                 notes = _join(controller, wrong)
                 joined({"notes": (*noted, *notes), "index": controller.index}, None)
                 self._report(controller)

@@ -33,7 +33,7 @@ export type ClaimEvent =
   | { is: "change"; renews: boolean }
   /** The person gives the seat up. */
   | { is: "leave" }
-  /** The person goes back to the card, or a team's match is over. */
+  /** The person goes back to the card, or a team's match is over or was taken back. */
   | { is: "forget" }
   /** The files are others than those that were sent: what was wrong in those is old. */
   | { is: "mended" }
@@ -103,10 +103,8 @@ type Trigger =
 
 type Row = Partial<Record<Trigger, readonly [ClaimState, ...ClaimEffect[]]>>;
 
-/** A grant may come late. */
 const WITHOUT_WISH: Row = {
   join: ["joining"],
-  granted: ["holding", "begin"],
   taken: ["lost"],
 };
 
@@ -125,6 +123,7 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   none: WITHOUT_WISH,
   joining: {
     ...WITH_WISH,
+    forget: ["none", "drop"],
     open: ["joining", "ask"],
     unheard: ["joining", "rest"],
     deferred: ["none", "drop"],
@@ -138,6 +137,7 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   },
   changing: {
     ...WITH_WISH,
+    forget: ["none", "drop"],
     open: ["changing", "ask"],
     unheard: ["changing", "rest"],
     deferred: ["none", "drop"],
@@ -149,7 +149,8 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
     taken: ["lost"],
   },
   left: { ...WITHOUT_WISH, forget: ["none"] },
-  lost: { ...WITHOUT_WISH, forget: ["none"] },
+  // The news may be of the older hold of a seat that was asked for again.
+  lost: { ...WITHOUT_WISH, forget: ["none"], granted: ["holding", "begin"] },
 };
 
 /** States with a wish. */
@@ -171,6 +172,9 @@ export function claimOf(wish: Wish | null): Claim {
 /** Take in an event: the claim after it, and what the page has to do, in this order. */
 export function step(claim: Claim, event: ClaimEvent): [Claim, readonly ClaimEffect[]] {
   const answered = answer(claim, event);
+  // The answer to an older request grants nothing: that seat was given up since.
+  if (event.is === "granted" && event.wish !== (claim.wish ?? claim.lastWish))
+    return [answered, []];
   const trigger = triggerOf(answered, event);
   const [state, ...effects] = (trigger && TRANSITIONS[claim.state][trigger]) ?? [claim.state];
   const todo = effects.filter((effect) => effect !== "ask" || answered.request === "none");

@@ -123,7 +123,7 @@ export class Team {
       seat: held || wanted,
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
-      lost: this.player.standing.peek() === "lost",
+      gone: ["left", "lost"].includes(this.player.standing.peek()),
       driven: there.call !== this.taken && this.isDriven(there.seat),
     });
     this.driven.value = move === "ask";

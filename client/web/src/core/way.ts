@@ -15,8 +15,8 @@ export interface Situation {
   mine: string;
   /** The match has been official for long enough that its result was seen. */
   seen: boolean;
-  /** The seat was lost to somebody else, and the page says so. */
-  lost: boolean;
+  /** The seat was given up, or lost to somebody else: the page says so, and has a button. */
+  gone: boolean;
   /** Somebody else drives the seat of the call: another page, or a program. */
   driven: boolean;
 }
@@ -35,16 +35,17 @@ export type Move = "stay" | "hold" | "rest" | "join" | "ask" | "go";
 
 /** Decide what the page does next. */
 export function nextMove(now: Situation): Move {
-  const { there, court, call, seat, mine, seen, lost, driven } = now;
+  const { there, court, call, seat, mine, seen, gone, driven } = now;
   if (there.open) return there.court === court ? "stay" : "go"; // a person brings name and files
   const isCalled = there.state === "court";
-  if (isCalled && there.call === mine) return "stay"; // whoever left it comes back by a button
+  // Whoever left the seat comes back by the button. A seat that a refusal ended is asked for again.
+  if (isCalled && there.call === mine && (seat || gone)) return "stay";
   const isHere = isCalled && there.court === court;
   if (isHere && seat === there.seat && call === there.call) return "hold";
   // The result stays for a while, unless another match has taken its place.
-  if ((seat || lost) && mine && call === mine && !seen) return "stay";
+  if ((seat || gone) && mine && call === mine && !seen) return "stay";
   // Nobody took the seat of a match that is no more, such as one that the office took back.
-  if (!isCalled) return seat || lost ? "rest" : "stay";
+  if (!isCalled) return seat || gone ? "rest" : "stay";
   if (!isHere) return "go";
   if (call !== there.call) return "stay";
   return driven ? "ask" : "join";

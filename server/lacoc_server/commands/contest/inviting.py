@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
+from urllib.parse import urlsplit
 
 import typer
 from rich.text import Text
@@ -19,6 +20,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, render, say
 
 _PAGES_PORT = 8080
+"""Port of the pages in links, until the contest has run once."""
 
 
 def invite(
@@ -50,7 +52,7 @@ def invite(
     if staff and team is not None:
         raise UserError(say("contest.invite-either"))
     plan = contests.load(contest)
-    people = [*_staff(plan, host)] if staff else [*_teams(plan, contest, team, host)]
+    people = [*_staff(plan, contest, host)] if staff else [*_teams(plan, contest, team, host)]
     if json:
         links = {one.name: one.link for one in people}
         of_kind = {
@@ -68,7 +70,7 @@ def invite(
     if not staff and team is None:
         screen.note(say("contest.invite-staff"))
     if not plan.public.pages:
-        screen.note(say("contest.invite-pages", pages=_pages(plan, host)))
+        screen.note(say("contest.invite-pages", pages=_pages(plan, contest, host)))
 
 
 class Invited(NamedTuple):
@@ -85,16 +87,16 @@ def _teams(plan: ContestFile, file: Path, team: str | None, host: str | None) ->
     from lacoc_server.contest.acts import organiser
 
     for name, token in organiser.tokens(file, team).items():
-        yield Invited("team", name, link(plan, "play", token, host))
+        yield Invited("team", name, link(plan, file, "play", token, host))
 
 
-def _staff(plan: ContestFile, host: str | None) -> Iterator[Invited]:
+def _staff(plan: ContestFile, file: Path, host: str | None) -> Iterator[Invited]:
     """Yield the link of each court's referee, then those of the staff."""
     for court in plan.courts:
         token = plan.secrets.referee(court)
-        yield Invited("referee", court, link(plan, "referee", token, host, court))
+        yield Invited("referee", court, link(plan, file, "referee", token, host, court))
     for name in plan.secrets.staff_names:
-        yield Invited("staff", name, link(plan, "office", plan.secrets.staff(name), host))
+        yield Invited("staff", name, link(plan, file, "office", plan.secrets.staff(name), host))
 
 
 def _title(one: Invited) -> Phrase:
@@ -105,11 +107,14 @@ def _title(one: Invited) -> Phrase:
     return say("contest.for-team", team=one.name)
 
 
-def link(plan: ContestFile, page: str, token: str, host: str | None = None, court: str = "") -> str:
+def link(
+    plan: ContestFile, file: Path, page: str, token: str, host: str | None = None, court: str = ""
+) -> str:
     """Return a link to a page of a contest.
 
     Args:
-        plan: the contest file.
+        plan: the contest.
+        file: its contest file.
         page: name of the page.
         token: token of the person or team that gets the link.
         host: host in the link, if the contest file does not say where the pages are; None: this
@@ -117,9 +122,19 @@ def link(plan: ContestFile, page: str, token: str, host: str | None = None, cour
         court: the court that the link names; "": none.
     """
     authority = plan.public.fingerprint
-    pages = _pages(plan, host)
+    pages = _pages(plan, file, host)
     return Link(pages=pages, page=page, court=court, token=token, authority=authority).text
 
 
-def _pages(plan: ContestFile, host: str | None) -> str:
-    return plan.public.pages or (f"{plan.public.scheme}://{host or plan.own_host}:{_PAGES_PORT}")
+def _pages(plan: ContestFile, file: Path, host: str | None) -> str:
+    """Return the address of the pages: the file's, else where `contest run` opened them last."""
+    if plan.public.pages:
+        return plan.public.pages
+    try:
+        opened = contests.pages_path(file).read_text()
+    except OSError:  # it has not run yet
+        opened = ""
+    if opened and host is None:
+        return opened
+    port = urlsplit(opened).port or _PAGES_PORT
+    return f"{plan.public.scheme}://{host or plan.own_host}:{port}"

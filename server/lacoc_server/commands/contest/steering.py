@@ -191,7 +191,7 @@ def staff(
         plan.secrets.forget_staff(who)
         screen.show(say("desk.staff-removed", name=who))
         return
-    text = link(plan, "office", plan.secrets.staff(who))
+    text = link(plan, contest, "office", plan.secrets.staff(who))
     screen.stdout.print(text, markup=False, soft_wrap=True)  # to be copied whole
 
 

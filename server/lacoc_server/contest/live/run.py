@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -31,6 +31,7 @@ from lacoc_server.contest.standby.door import StandbyDoor
 from lacoc_server.contest.standby.lookout import Lookout
 from lacoc_server.contest.standby.sealing import Sealing
 from lacoc_server.contest.standby.tenure import Tenure
+from lacoc_shared.command.replacing import write
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest.link import Link
 from lacoc_shared.network.session import open_client
@@ -162,6 +163,8 @@ def play_live(
         starting[_PAGES] = venue.pages(where, logs, listen, show, service.address)
         found = _opened(stack, starting)
         url = found.pop(_PAGES)
+        with suppress(OSError):  # without it, `contest invite` only names the usual port
+            write(where.pages, url.encode())
         private = where.contest.public.read_authority()
         for name, address in found.items():
             addresses[name] = address
