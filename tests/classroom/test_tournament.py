@@ -47,6 +47,7 @@ class Class:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_tournament_of_a_class(tmp_path: Path) -> None:
     """Gaits play under nicknames, each match has a record, and gaits with mistakes are left out."""
 

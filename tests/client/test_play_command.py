@@ -151,6 +151,7 @@ def test_the_terminal_is_as_before_however_one_leaves(
     assert not (tmp_path / "Pos-data.txt").exists()
 
 
+@pytest.mark.long
 def test_a_court_that_is_gone_is_said_and_comes_back(
     started: tuple[CourtProcess, Terminal],
 ) -> None:

@@ -49,8 +49,9 @@ class PageConnection:
     def __init__(self, url: str, path: str, **options: Any) -> None:
         address = f"{url.replace('http', 'ws', 1)}{path}"
         # Without `max_queue`, unread messages never block the answers to pings.
+        # A gateway that answers many requests one after another closes late; no test waits for it.
         self.socket: ClientConnection = connect(
-            address, max_size=None, max_queue=None, legacy=True, **options
+            address, max_size=None, max_queue=None, close_timeout=1, legacy=True, **options
         )
         self._ids = itertools.count(1)
         self._replies: dict[int, dict[str, Any]] = {}

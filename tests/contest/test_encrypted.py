@@ -61,6 +61,7 @@ def is_renewed(file: Path, at: str, before: str) -> bool:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_waiting_court_takes_a_renewed_certificate(file: Path, tmp_path: Path) -> None:
     """It starts again at the same port, and a client that was there comes back by itself."""
     opened = venue.court(ContestFolder(file), "north", tmp_path / "north", 1.0, print, here=True)

@@ -335,6 +335,7 @@ def check_bad(file: Path, said: str, told: list[str]) -> None:
     assert re.match(r"Wrong: \d+ keys were refused, because the gait does not have them", wrong)
 
 
+@pytest.mark.long
 def test_bad_bots_stop_no_other_game(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of six bots one hangs, one raises, one presses wrong keys: the contest ends by itself.
 

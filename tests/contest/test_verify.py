@@ -315,13 +315,14 @@ def forged(folder: Path, place: Path, names: Sequence[str]) -> tuple[bool, GameC
         ["the start"],
         ["a halt"],
         ["physics stops"],
-        ["points", "court"],
-        ["points", "versions"],
-        ["another bot", "versions"],
-        ["another bot", "court"],
         ["keys left out", "arithmetic"],
         ["another bot", "called"],
         ["no end"],
+        *(
+            pytest.param([change, known], marks=pytest.mark.long)
+            for change in ("points", "another bot")
+            for known in ("court", "versions")
+        ),
     ],
     ids=" and ".join,
 )
@@ -445,6 +446,7 @@ def test_a_record_of_other_physics_is_not_proven(copied: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_game_of_another_arithmetic_is_played_again(played: Path, tmp_path: Path) -> None:
     """The record of another arithmetic passes if the game ends here with the same result."""
     folder = played / "published"

@@ -80,6 +80,7 @@ def states(page: DesignClient) -> list[str]:
     return [phase["state"] for phase in page.phases["phases"]]
 
 
+@pytest.mark.long
 def test_two_phases_are_done_and_survive_a_kill(
     starts: Callable[[], tuple[Gateway, DesignClient]], folder: Path
 ) -> None:

@@ -120,7 +120,7 @@ def test_a_seed_chooses_the_seat() -> None:
 
 
 @pytest.mark.parametrize("arena", ["othello", "flag-strike"])
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
     """Each row of a vector environment equals a single one bit for bit, over several episodes."""
     rows(arena, threads, steps=80, count=2)

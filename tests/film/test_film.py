@@ -71,6 +71,7 @@ def test_two_browsers_make_the_same_film(
     assert len({picture.tobytes() for picture in middle}) == len(middle)
 
 
+@pytest.mark.long
 def test_a_browser_that_makes_its_own_frames_draws_the_same(
     recorded: Path, with_browser: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -55,6 +55,7 @@ def ask(
         return Answer(error.code, error.read().decode())
 
 
+@pytest.mark.long
 def test_a_fork_becomes_a_recording_of_the_gateway(library: Venue) -> None:
     """A fork is listed and can be fetched; the folder of the recordings stays as it was."""
     folder = library.folder / "recordings"

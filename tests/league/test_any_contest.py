@@ -14,6 +14,11 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.schedule import Assignment
 
 FORMAT_NAMES = ("round-robin", "swiss", "sequential", "single-knockout", "double-knockout")
+QUICK_FIRST = [
+    pytest.param(how, marks=[pytest.mark.long] if how == "sequential" else [])
+    for how in FORMAT_NAMES
+]
+"""Formats; a sequential contest takes as long as all others together."""
 
 
 def most_rounds(how: str, teams: int) -> int:
@@ -100,7 +105,7 @@ def play(event: Event, how: str, **options: int) -> None:
     check_facts(event, contest)
 
 
-@pytest.mark.parametrize("how", FORMAT_NAMES)
+@pytest.mark.parametrize("how", QUICK_FIRST)
 @settings(max_examples=settings.default.max_examples // 5)  # a contest has hundreds of steps
 @given(
     teams=st.integers(2, 24),

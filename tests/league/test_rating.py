@@ -65,6 +65,7 @@ def test_intervals_of_200_leagues() -> None:
     assert 0.93 <= coverage(leagues=200, teams=12, times=1) <= 0.97
 
 
+@pytest.mark.long
 def test_side_bias() -> None:
     """The advantage of the left side is found within 15 Elo, as the mean of four leagues.
 

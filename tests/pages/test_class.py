@@ -90,6 +90,7 @@ def tries(student: StudentPage) -> None:
     student.ask("trial", table=edits(student), sequences=SEQUENCES, keys="2")
 
 
+@pytest.mark.long
 def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     open_page: OpenPage, room: ClassRoom, closing: ExitStack
 ) -> None:

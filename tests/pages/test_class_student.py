@@ -69,6 +69,7 @@ class Pupil(Designer):
         self.until(TOLD)
 
 
+@pytest.mark.long
 def test_joins_by_keyboard_and_the_table_stays(open_page: OpenPage, room: ClassRoom) -> None:
     """A phone's page explains that a class code is wrong; a reload keeps the student's table."""
     page = Pupil(open_page, room.url, **PHONE)

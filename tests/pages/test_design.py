@@ -356,6 +356,7 @@ def test_a_table_goes_to_practice(
     assert violations(page.page) == []
 
 
+@pytest.mark.long
 def test_a_foot_is_moved_in_the_picture(open_page: OpenPage, address: tuple[str, str]) -> None:
     """A foot follows arrow keys and a drag: three cells change in one step; too far is said."""
     page = designer(open_page, address)
@@ -474,6 +475,7 @@ def test_predict_compare_and_the_way_back(
     page.cell_is(1, 0, "0")
 
 
+@pytest.mark.long
 def test_what_is_pasted_dropped_and_composed(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

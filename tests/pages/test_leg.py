@@ -198,6 +198,7 @@ def test_a_student_of_a_class_comes_back_to_where_she_was(
         assert violations(page) == []
 
 
+@pytest.mark.long
 def test_the_worksheet_has_answers_only_for_the_teacher(own: OwnPage, open_page: OpenPage) -> None:
     """The worksheet has blank lines; with `answers` they hold the numbers, for any sample robot."""
     page = open_page()

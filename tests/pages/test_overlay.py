@@ -168,6 +168,7 @@ def test_it_heals_for_ever(venue: Venue, open_page: OpenPage, console: Any) -> N
     show.moves()
 
 
+@pytest.mark.long
 def test_a_whole_match(venue: Venue, open_page: OpenPage) -> None:
     """The overlay shows a whole match by itself, from the opening to the next match's opening."""
     venue.court("--seconds", "1")

@@ -305,6 +305,7 @@ def test_equal_links_are_shown(venue: Venue, sit: Sit) -> None:
     page.sees(".foot", "equal for both")
 
 
+@pytest.mark.long
 def test_what_the_command_line_said_needs_one_click(own: tuple[str, str], sit: Sit) -> None:
     """`lacoc play` fills in the join form of its page, so that one click joins the match."""
     url, key = own
@@ -642,6 +643,7 @@ def test_a_japanese_browser_gets_a_japanese_page(venue: Venue, sit: Sit) -> None
     assert english <= {"Robot", "Othello"}, english
 
 
+@pytest.mark.long
 def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> None:
     """A page whose seat was taken elsewhere says so, and takes it back only after a click."""
     page = seated(venue, sit)

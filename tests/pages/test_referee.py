@@ -484,6 +484,7 @@ def test_a_reason_goes_with_its_button(court: Venue, referee: Referee) -> None:
     expect(bubble).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_dialog_gives_the_focus_back(court: Venue, referee: Referee) -> None:
     """After a dialog closes, the button that opened it has the keyboard focus again."""
     page = at_the_desk(referee())

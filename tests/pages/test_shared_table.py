@@ -87,6 +87,7 @@ def room(tmp_path: Path, built_pages: Path) -> Iterator[ClassRoom]:
         yield room
 
 
+@pytest.mark.long
 def test_a_student_works_on_two_devices(room: ClassRoom, open_page: OpenPage) -> None:
     """A tablet that the teacher lets in has the table; what is typed on it is on the laptop too."""
     laptop = Pupil(open_page, room.url)

@@ -65,6 +65,7 @@ def test_the_services_hang_together() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_composition_plays(tmp_path: Path) -> None:
     """When the services start in their order, the two bots are called to the court, and play."""
     port, web_port = str(free_port()), str(free_port())

@@ -35,6 +35,7 @@ def said(folder: Path, writer: RecordWriter) -> list[str]:
     return [line["event"] for line in lines]
 
 
+@pytest.mark.long
 def test_a_match_that_the_disk_has_is_no_line(tmp_path: Path) -> None:
     """A record that reaches the disk adds no line to the log."""
     assert said(tmp_path, RecordWriter(tmp_path, HEADER)) == []

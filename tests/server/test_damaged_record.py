@@ -193,8 +193,16 @@ def test_a_missing_segment_is_told(left_behind: bytes, folder: Path) -> None:
     ("change", "words"),
     [
         (lambda data, at: with_header(data, at, format=2), "has format 2, and this software reads"),
-        (lambda data, at: with_header(data, at, format=0), "has format 0, and this software reads"),
-        (lambda data, at: versions(data, at, mujoco="3.9.9"), "made with MuJoCo 3.9.9"),
+        pytest.param(
+            lambda data, at: with_header(data, at, format=0),
+            "has format 0, and this software reads",
+            marks=pytest.mark.long,
+        ),
+        pytest.param(
+            lambda data, at: versions(data, at, mujoco="3.9.9"),
+            "made with MuJoCo 3.9.9",
+            marks=pytest.mark.long,
+        ),
         (lambda data, at: data.replace(*other_model(data)), "damaged, or this is not the software"),
         (
             lambda data, at: with_header(data, at, setup=setup_of("/home/a/game")),

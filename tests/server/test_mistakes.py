@@ -33,6 +33,7 @@ from lacoc_shared.studio import Sentence
 from lacoc_shared.words import render
 
 BEGINNERS = list(beginners())
+TABLES = ["sample", pytest.param("tripod", marks=pytest.mark.long)]
 
 
 @pytest.mark.slow
@@ -49,7 +50,7 @@ def test_the_first_sentence_names_a_beginners_mistake(index: int) -> None:
     "kind",
     [
         "zeros",
-        "2nd -40",
+        pytest.param("2nd -40", marks=pytest.mark.long),
         pytest.param("rows 2, 3 changed", marks=pytest.mark.long),
         pytest.param("left Roots' signs", marks=pytest.mark.long),
     ],
@@ -66,7 +67,7 @@ ADVICE = {"dragged", "backward", "out-of-step"}
 """Sentences that tell what a single leg should do otherwise."""
 
 
-@pytest.mark.parametrize("table", ["sample", "tripod"])
+@pytest.mark.parametrize("table", TABLES)
 @pytest.mark.parametrize(
     ("kind", "change", "code"),
     [
@@ -101,7 +102,7 @@ def test_feet_that_never_reach_the_floor_are_named_first(
         assert "belly" not in found.codes, found
 
 
-@pytest.mark.parametrize("table", ["sample", "tripod"])
+@pytest.mark.parametrize("table", TABLES)
 @pytest.mark.parametrize(
     ("kind", "change", "code"),
     [
@@ -181,7 +182,7 @@ def test_feet_that_push_back_in_half_a_cycle_are_named(
     assert "row 2" in render(said)
 
 
-@pytest.mark.parametrize("table", ["sample", "tripod"])
+@pytest.mark.parametrize("table", TABLES)
 def test_two_postures_with_the_same_feet_have_no_wrong_number(table: str) -> None:
     """If the same feet carry in both postures, others are missing: nothing is to be changed."""
     good = GOOD[table][1]()

@@ -336,6 +336,7 @@ def test_a_search_can_be_repeated(asker: Asker) -> None:
     assert counts == sorted(counts)
 
 
+@pytest.mark.long
 def test_a_search_can_be_cancelled(asker: Asker) -> None:
     """A cancelled search replies with its best gait, or is refused if it has not begun."""
     progress = asker.session.mailbox(KEYS.progress("long"), 1000)

@@ -58,7 +58,7 @@ def centres(reply: TryOutReply) -> list[tuple[float, float]]:
     return [tuple(np.frombuffer(poses, "<f4")[:2]) for poses in reply.poses]
 
 
-@pytest.mark.parametrize("seat", [LEFT, RIGHT])
+@pytest.mark.parametrize("seat", [pytest.param(LEFT, marks=pytest.mark.long), RIGHT])
 def test_the_robot_stands_alone_where_its_match_begins(try_outs: TryOuts, seat: int) -> None:
     """Without keys the robot stands at its start place, in its colours, and no other is there."""
     try_outs.hold(lobby(*JOINED))

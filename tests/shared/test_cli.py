@@ -326,7 +326,11 @@ COMMANDS_THAT_PRINT = [
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a device of Linux")
 @pytest.mark.parametrize(
     ("words", "unbuffered"),
-    [*((words, "") for words in COMMANDS_THAT_PRINT), (["robot", "list"], "1")],
+    [
+        *((words, "") for words in COMMANDS_THAT_PRINT[-2:]),
+        *(pytest.param(words, "", marks=pytest.mark.long) for words in COMMANDS_THAT_PRINT[:-2]),
+        (["robot", "list"], "1"),
+    ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else value,
 )
 @pytest.mark.parametrize(

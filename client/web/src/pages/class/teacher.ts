@@ -74,6 +74,8 @@ export class Teacher {
   private readonly robots = remembered<readonly string[]>("class.robots", [], tab);
   /** The order so far, which cards keep while they are held. */
   private shown: readonly string[] = [];
+  /** Number of changes of the rules that have no answer yet. */
+  private changing = 0;
 
   /** The cards in the order in which they stand on the page. */
   readonly order = computed<readonly Card[]>(() => {
@@ -141,7 +143,9 @@ export class Teacher {
 
   async change(rules: StudentRules): Promise<void> {
     this.rules.value = rules;
+    this.changing += 1;
     const taken = await this.act("rules", { rules });
+    this.changing -= 1;
     if (taken === null) this.rules.value = this.state.peek()?.rules ?? OPEN_RULES;
   }
 
@@ -200,7 +204,8 @@ export class Teacher {
       const { body } = message;
       batch(() => {
         this.state.value = body;
-        this.rules.value = body.rules;
+        // What was chosen since must not go back, or the next choice would lose it.
+        if (!this.changing) this.rules.value = body.rules;
         if (body.cards) this.deal(body.cards);
       });
     } else if (message.kind === "card") {
