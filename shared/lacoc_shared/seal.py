@@ -16,7 +16,7 @@ _HASH_BYTES = 32
 def hash_token(token: str, salt: bytes) -> str:
     """Hash a token for storage: "salt$hash", both hexadecimal.
 
-    The hash is a fast one, because a court must verify it within a beat. For random tokens
+    The hash is a fast one, because a court must verify it within a beat (20 ms). For random tokens
     (`lacoc_shared.contest.tokens`) this is safe. A short word that a person chose can be guessed
     from the hash, so don't publish records with such tokens while the tokens are in use.
 

@@ -97,7 +97,7 @@ class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
 
 
 class CourtDay(DeskRequest, frozen=True, kw_only=True, tag="court_day"):
-    """Ask what comes next at a court, and what a certain result of its game would change."""
+    """Ask what comes next at a court, and what a given result of its game would change."""
 
     court: _Name
     scores: tuple[int, int] | None = None

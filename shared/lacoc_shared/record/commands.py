@@ -174,7 +174,10 @@ def _summary(record: Record) -> dict[str, Any]:
 
 
 def _keys(record: Record, seat: int) -> dict[str, int]:
-    """Count a seat's keys and the late ones among them; find the longest delay added to one."""
+    """Count a seat's key presses, and those of them that took effect late.
+
+    Also find the longest time for which the court held one back, to make both links equal [beats].
+    """
     inputs = (item for items in record.inputs.values() for item in items)
     keys = [item for item in inputs if isinstance(item, KeySeat) and item.seat == seat]
     return {

@@ -200,7 +200,7 @@ def _damaged_data(data: bytes, at: int, count: int) -> Stop:
 
 
 def _messages_by_summary(data: bytes, at: int) -> int | None:
-    """Return how many messages a file has by its summary; None if the summary is damaged too."""
+    """Return how many messages a file has, as its summary says; None if that is damaged too."""
     if _is_index_damaged(data, at):
         return None
     reader = StreamReader(BytesIO(data[at:]), skip_magic=True, record_size_limit=len(data))

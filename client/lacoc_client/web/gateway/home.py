@@ -53,7 +53,8 @@ class Home:
     sheet: Path | None = None
     """Path of the contest's sheet, which its office writes again and again; None: no contest."""
     keeps_back: bool = False
-    """Whether pages may fetch only the recordings that the sheet names."""
+    """Whether pages may fetch only the recordings that the contest's sheet names, as /contest does.
+    """
     cheers: bool = True
     """Whether people who watch may cheer."""
     desk: bool = False

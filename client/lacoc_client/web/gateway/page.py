@@ -230,7 +230,9 @@ class Page:
         return found
 
     def _accepted(self, token: str) -> None:
-        """Note that a court accepted the page's token; give the page a place among those that act.
+        """Note that a court accepted the page's token: the page may play or judge from now on.
+
+        It takes one of the places for such pages, whose number is limited.
 
         Raises:
             UserError: if there is no room.

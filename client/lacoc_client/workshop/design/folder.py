@@ -186,7 +186,7 @@ class Folder:
 
 
 def version_of(data: bytes | None) -> str:
-    """Return the version of a file with this content; None: there is no file."""
+    """Return the version of a file: a hash of its content `data`; None: there is no file."""
     return ABSENT if data is None else hashlib.blake2b(data, digest_size=8).hexdigest()
 
 

@@ -209,7 +209,7 @@ class SharedTable:
         self._draft = draft_of(document.entries) or self._draft
         self._is_draft_old = False
         self._writers: dict[int, Viewer] = {}
-        """The page that writes under each page number in this document."""
+        """For each page number (Yjs's client id) of this document, the page that has it."""
         self._typed: dict[str, tuple[int, Viewer]] = {}
         """For each cell the number of the last update in which it was typed, and the page."""
 

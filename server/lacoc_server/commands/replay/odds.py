@@ -25,8 +25,8 @@ def odds_command(
     """Print how the chance to win changes during a match, computed from forks that bots play.
 
     The chance is that of two bots that take over at a moment. So it tells what the position is
-    worth, not who plays better. Forks of near moments count for a moment's chance too; their
-    margins are in brackets.
+    worth, not who plays better. The last column says by how many points each fork ended. In
+    brackets are those of moments nearby, which count for the chance too.
 
     The odds are kept beside the record, as MATCH.odds.json; /replay shows them as a curve. Forks
     that were played are not played again.

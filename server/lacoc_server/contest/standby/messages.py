@@ -90,8 +90,8 @@ class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="
     applications: str
     """Version of the list of applications."""
     waiting: dict[str, int] | None
-    """When each team that waits handed its files in [ms since 1970, UTC]; None: the second machine
-    has this version already."""
+    """The time at which each waiting team sent its files [ms since 1970, UTC]; None: the second
+    machine has this version of the list already."""
     records: tuple[str, ...]
     """Ids of the matches whose records are still written, or not packed yet."""
 
