@@ -23,7 +23,7 @@ from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
 from lacoc_server.world.world import World
-from lacoc_shared.contest.file import load
+from lacoc_shared.contest.file import load, port_path
 from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.office import Whereabouts, open_match
@@ -215,6 +215,7 @@ def test_friends_play_match_after_match(tmp_path: Path) -> None:
     with contest_run(file, stderr=subprocess.DEVNULL) as run:
         opened = run.opened
         tokens = {seat: load(file).secrets.seat("red", seat) for seat in ("left", "right")}
+        assert port_path(file).read_text() == opened["url"].rpartition(":")[2]
         links = opened["seats"]["red"]
         assert all(tokens[seat] in links[seat] for seat in tokens)
         with open_client([opened["courts"]["red"]]) as session:

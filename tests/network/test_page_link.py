@@ -84,7 +84,6 @@ def test_the_court_gets_the_frame_that_the_page_showed(court: CourtStub) -> None
     assert court.refused["left"] == {}
 
 
-@pytest.mark.slow
 def test_a_page_that_gives_a_seat_up_at_once_still_gets_the_answer_to_its_join(
     court: CourtStub,
 ) -> None:
@@ -108,6 +107,7 @@ def test_a_page_that_gives_a_seat_up_at_once_still_gets_the_answer_to_its_join(
     assert not any(isinstance(one, JoinSeat) for one in court.inputs)
 
 
+@pytest.mark.slow
 def test_repeats_name_no_frame_that_the_player_did_not_see(
     court: CourtStub, session: Session
 ) -> None:

@@ -48,6 +48,7 @@ listen = ["127.0.0.1:{free_port()}"]
     file.write_text(f"""
 [contest]
 name = "Spring Cup"
+pages = "http://{where}"
 least_rest_s = 3.0
 {courts}
 [stage.league]
@@ -196,6 +197,7 @@ def test_a_seat_that_the_court_refuses_is_told_and_asked_for_again(venue: Venue,
         player.sees(".entrance[data-state=court] [role=alert]", "the match is being played")
         asked = joins(court)
         until(lambda: joins(court) > asked)
+        player.sees(".entrance [role=alert]", "the match is being played")
         # The court lets the team in from here on.
         there = msgspec.structs.replace(there, team="Ants")
         court.teams.tell({seal.hash_token(TOKENS["left"], bytes(16)): there})

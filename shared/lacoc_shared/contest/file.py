@@ -156,13 +156,10 @@ def facts_path(path: Path) -> Path:
     return path.resolve().with_suffix(".db")
 
 
-def pages_path(path: Path) -> Path:
-    """Return the path of the file with the address at which a contest last had its pages.
-
-    `contest run` writes it, beside the contest file.
-    """
+def port_path(path: Path) -> Path:
+    """Return the path of the file with the port at which `contest run` last opened the pages."""
     path = path.resolve()
-    return path.with_name(f"{path.stem}.pages.txt")
+    return path.with_name(f"{path.stem}.port.txt")
 
 
 def secrets_path(path: Path) -> Path:

@@ -24,8 +24,8 @@ const leave = { is: "leave" };
 const forget = { is: "forget" };
 const open = { is: "open" };
 const granted = { is: "granted", wish, index: 0 };
-const broke = { is: "failed", refusal: no, broke: true };
-const failed = (refusal) => ({ is: "failed", refusal, broke: false });
+const broke = { is: "failed", wish, refusal: no, broke: true };
+const failed = (refusal) => ({ is: "failed", wish, refusal, broke: false });
 const rested = { is: "rested" };
 const taken = { is: "taken", why: { code: "hold.replaced" } };
 const released = { is: "released" };
@@ -225,6 +225,10 @@ test("a match that is taken back while its seat is asked for leaves nothing behi
   const again = after(forgotten, { is: "join", wish: other }, granted);
   assert.deepEqual([again.state, again.wish, again.request], ["joining", other, "none"]);
   assert.deepEqual(after(again, open).effects, ["ask"]);
+  // Nor does it refuse anything.
+  const refused = after(forgotten, { is: "join", wish: other }, failed(no));
+  assert.deepEqual([refused.state, refused.refusal, refused.request], ["joining", null, "none"]);
+  assert.equal(after(seated, leave, forget, released).state, "none");
 });
 
 test("which refusals are final", () => {

@@ -42,7 +42,7 @@ export type ClaimEvent =
   /** The court grants what was asked for. `index`: of the seat. */
   | { is: "granted"; wish: Wish; index: number }
   /** The court did not grant it. `broke`: the connection ended, so nobody knows. */
-  | { is: "failed"; refusal: Refused; broke: boolean }
+  | { is: "failed"; wish: Wish; refusal: Refused; broke: boolean }
   /** The pause after a failed request is over. */
   | { is: "rested" }
   /** The court tells that the seat is not this page's any more. */
@@ -64,6 +64,8 @@ export type ClaimEvent =
  * - `clear`: forget the keys that were pressed.
  */
 export type ClaimEffect = "ask" | "begin" | "rest" | "drop" | "renew" | "release" | "clear";
+
+type Answer = Extract<ClaimEvent, { is: "granted" | "failed" }>;
 
 export interface Claim {
   readonly state: ClaimState;
@@ -144,6 +146,7 @@ export const TRANSITIONS: Readonly<Record<ClaimState, Row>> = {
   },
   leaving: {
     join: ["joining"],
+    forget: ["none", "drop"],
     released: ["left", "clear"],
     kept: ["holding"],
     taken: ["lost"],
@@ -172,9 +175,8 @@ export function claimOf(wish: Wish | null): Claim {
 /** Take in an event: the claim after it, and what the page has to do, in this order. */
 export function step(claim: Claim, event: ClaimEvent): [Claim, readonly ClaimEffect[]] {
   const answered = answer(claim, event);
-  // The answer to an older request grants nothing: that seat was given up since.
-  if (event.is === "granted" && event.wish !== (claim.wish ?? claim.lastWish))
-    return [answered, []];
+  // The answer to an older request changes nothing else: that seat was given up since.
+  if (isAnswer(event) && event.wish !== (claim.wish ?? claim.lastWish)) return [answered, []];
   const trigger = triggerOf(answered, event);
   const [state, ...effects] = (trigger && TRANSITIONS[claim.state][trigger]) ?? [claim.state];
   const todo = effects.filter((effect) => effect !== "ask" || answered.request === "none");
@@ -192,6 +194,10 @@ export function keptWish({ state, wish }: Claim): Wish | null {
 /** Whether the same request would be refused again. */
 export function isFinal({ mistakes, why }: Pick<Refused, "mistakes" | "why">): boolean {
   return mistakes.length > 0 || FINAL.has(why.code);
+}
+
+function isAnswer(event: ClaimEvent): event is Answer {
+  return event.is === "granted" || event.is === "failed";
 }
 
 /** Note an answer: the join is not under way any more. */

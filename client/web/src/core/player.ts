@@ -330,7 +330,7 @@ export class Player {
       for (const note of this.alone ? [] : joined.notes) this.sayNote(note);
     } catch (error) {
       const broke = !this.court.connection.state.peek().open;
-      this.tell({ is: "failed", refusal: error as Refused, broke });
+      this.tell({ is: "failed", wish, refusal: error as Refused, broke });
     }
   }
 

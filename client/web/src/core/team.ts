@@ -30,11 +30,15 @@ export class Team {
   readonly refusal = signal<Refused | null>(null);
   /** Whether somebody else drives the team's seat now, and this page must not take it unasked. */
   readonly driven = signal(false);
+  /** Why the court of the call gives the page no seat yet, however often it asks. */
+  readonly unseated = signal<Refused | null>(null);
   /** The court to which the page goes now; "": it stays. */
   readonly going = signal("");
   private mine = "";
   /** The call whose seat a person takes from whoever drives it. */
   private taken = "";
+  /** The call of the newest request for a seat. */
+  private asked = "";
   private officialMs = 0;
   private triedMs = 0;
   private isAsking = false;
@@ -127,11 +131,22 @@ export class Team {
       driven: there.call !== this.taken && this.isDriven(there.seat),
     });
     this.driven.value = move === "ask";
+    this.hearRefusal(there.call);
     // Only the court's health says who holds the seat; it comes twice a second.
     if (move === "join" && !this.court.health.peek()) return;
     const isMine = there.open || (there.call && there.call === this.mine);
     this.player.next.value = isMine ? null : there.said;
     this.make(move, there, now);
+  }
+
+  /** Keep the newest refusal until a seat is held, so that it does not go with each new request. */
+  private hearRefusal(call: string): void {
+    const isNew = call !== this.asked;
+    this.asked = call;
+    const { refusal } = this.player.claim.peek();
+    const isSeated = this.player.standing.peek() === "seated";
+    if (isNew || isSeated || this.driven.peek()) this.unseated.value = null;
+    else if (refusal) this.unseated.value = refusal;
   }
 
   /** Whether somebody holds the seat, and was heard lately. */
@@ -143,7 +158,10 @@ export class Team {
   private make(move: Move, there: Whereabouts, now: number): void {
     switch (move) {
       case "hold":
-        if (this.player.standing.peek() === "seated") this.mine = there.call;
+        if (this.player.standing.peek() === "seated") {
+          this.mine = there.call;
+          this.taken = "";
+        }
         break;
       case "rest":
         this.player.rest();

@@ -4,7 +4,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Literal, NamedTuple
-from urllib.parse import urlsplit
 
 import typer
 from rich.text import Text
@@ -127,14 +126,11 @@ def link(
 
 
 def _pages(plan: ContestFile, file: Path, host: str | None) -> str:
-    """Return the address of the pages: the file's, else where `contest run` opened them last."""
+    """Return the address of the pages: that of the file, else the port of the last run here."""
     if plan.public.pages:
         return plan.public.pages
     try:
-        opened = contests.pages_path(file).read_text()
+        port = contests.port_path(file).read_text()
     except OSError:  # it has not run yet
-        opened = ""
-    if opened and host is None:
-        return opened
-    port = urlsplit(opened).port or _PAGES_PORT
+        port = str(_PAGES_PORT)
     return f"{plan.public.scheme}://{host or plan.own_host}:{port}"

@@ -42,8 +42,8 @@ class ContestFolder:
         """File of the entries that wait for the organiser."""
         self.secrets = contests.secrets_path(file)
         """File of all tokens."""
-        self.pages = contests.pages_path(file)
-        """File with the address at which the pages were opened last."""
+        self.port = contests.port_path(file)
+        """File with the port at which the pages were opened last; none if `pages` is set."""
         self.contacts = folder / f"{file.stem}.contacts.json"
         """File that says how to reach the teams."""
         self.published = contests.published_path(file).absolute()

@@ -8,6 +8,7 @@ from contextlib import AbstractContextManager, ExitStack, suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import urlsplit
 
 from lacoc_server.contest.acts.organiser import prepare
 from lacoc_server.contest.desk.book import Book
@@ -163,8 +164,9 @@ def play_live(
         starting[_PAGES] = venue.pages(where, logs, listen, show, service.address)
         found = _opened(stack, starting)
         url = found.pop(_PAGES)
-        with suppress(OSError):  # without it, `contest invite` only names the usual port
-            write(where.pages, url.encode())
+        if not where.contest.public.pages:
+            with suppress(OSError):  # without it, `contest invite` only names the usual port
+                write(where.port, str(urlsplit(url).port).encode())
         private = where.contest.public.read_authority()
         for name, address in found.items():
             addresses[name] = address

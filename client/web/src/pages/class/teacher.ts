@@ -144,9 +144,9 @@ export class Teacher {
   async change(rules: StudentRules): Promise<void> {
     this.rules.value = rules;
     this.changing += 1;
-    const taken = await this.act("rules", { rules });
+    await this.act("rules", { rules });
     this.changing -= 1;
-    if (taken === null) this.rules.value = this.state.peek()?.rules ?? OPEN_RULES;
+    if (!this.changing) this.rules.value = this.state.peek()?.rules ?? OPEN_RULES;
   }
 
   toggle(phase: number): void {

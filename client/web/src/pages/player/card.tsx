@@ -38,7 +38,7 @@ export function Entrance({ court, player, alone, team }: EntranceProps) {
     case "outside":
       if (!court.welcome.value || team?.going.value) return <OnTheWay team={team} />;
       if (team && !(team.isOn.value && team.there.value?.open))
-        return <TeamCard court={court} player={player} team={team} />;
+        return <TeamCard court={court} team={team} />;
       return <JoinCard court={court} player={player} alone={alone} team={team} />;
     default:
       return null;

@@ -2,7 +2,6 @@
 
 import { useSignal } from "@preact/signals";
 import type { Court } from "../../core/court";
-import type { Player } from "../../core/player";
 import type { Team } from "../../core/team";
 import { said, sentence, t } from "../../i18n";
 import { RulesLink } from "../../ui/rules_link";
@@ -12,11 +11,10 @@ const PLAYED: ReadonlySet<string> = new Set(["team.out", "team.over"]);
 
 interface Props {
   court: Court;
-  player: Player;
   team: Team;
 }
 
-export function TeamCard({ court, player, team }: Props) {
+export function TeamCard({ court, team }: Props) {
   const contest = court.welcome.value?.contest;
   if (!team.isOn.value) return <TokenCard contest={contest} team={team} />;
   const there = team.there.value;
@@ -29,7 +27,7 @@ export function TeamCard({ court, player, team }: Props) {
     );
   }
   const isOver = team.isOver.value;
-  const { refusal } = player.claim.value;
+  const refusal = team.unseated.value;
   const own = `contest#team=${encodeURIComponent(there.team)}`;
   return (
     <section class="card entrance" aria-labelledby="entrance-title" data-state={there.state}>
@@ -47,7 +45,7 @@ export function TeamCard({ court, player, team }: Props) {
           <p class="muted">{t("team.before", { count: Number(there.games_before) })}</p>
         )}
       </div>
-      {there.state === "court" && refusal && (
+      {refusal && (
         // The page asks again by itself; whoever stands beside it must know what to wait for.
         <p class="error" role="alert">
           {sentence(refusal.why)}
