@@ -14,7 +14,7 @@ from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.schedule import Assignment
 
 FORMAT_NAMES = ("round-robin", "swiss", "sequential", "single-knockout", "double-knockout")
-QUICK_FIRST = [
+FORMAT_CASES = [
     pytest.param(how, marks=[pytest.mark.long] if how == "sequential" else [])
     for how in FORMAT_NAMES
 ]
@@ -105,7 +105,7 @@ def play(event: Event, how: str, **options: int) -> None:
     check_facts(event, contest)
 
 
-@pytest.mark.parametrize("how", QUICK_FIRST)
+@pytest.mark.parametrize("how", FORMAT_CASES)
 @settings(max_examples=settings.default.max_examples // 5)  # a contest has hundreds of steps
 @given(
     teams=st.integers(2, 24),

@@ -60,10 +60,12 @@ def started(venue: Venue, page: Contestant) -> PageClient:
 COUNTS_DOWN = """() => {
   const button = document.querySelector(".restart");
   new MutationObserver(() => {
+    const told = document.querySelector(".next")?.textContent ?? "";
     window.__countsDown ||= button.textContent.includes("in ");
-  }).observe(button, { subtree: true, childList: true, characterData: true });
+    window.__restartTold ||= told.includes("Restarted: your keys work again in");
+  }).observe(document, { subtree: true, childList: true, characterData: true });
 }"""
-"""Notes that the button of a restart says when keys work again."""
+"""Notes that the button of a restart and the line of the next step say when keys work again."""
 
 
 def playing(venue: Venue, page: Contestant) -> PageClient:
@@ -441,7 +443,7 @@ def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
 
     page.page.evaluate(COUNTS_DOWN)
     page.press("x")
-    page.until("window.__countsDown")
+    page.until("window.__countsDown && window.__restartTold")
     page.press("2")  # at once: keys are refused for five seconds only
     page.is_toasted("[2] Your robot was restarted a moment ago")
     page.key_stands(0)

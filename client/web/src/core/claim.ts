@@ -65,8 +65,6 @@ export type ClaimEvent =
  */
 export type ClaimEffect = "ask" | "begin" | "rest" | "drop" | "renew" | "release" | "clear";
 
-type Answer = Extract<ClaimEvent, { is: "granted" | "failed" }>;
-
 export interface Claim {
   readonly state: ClaimState;
   /** Whether a join is under way, or has failed so lately that the next must wait. */
@@ -176,7 +174,8 @@ export function claimOf(wish: Wish | null): Claim {
 export function step(claim: Claim, event: ClaimEvent): [Claim, readonly ClaimEffect[]] {
   const answered = answer(claim, event);
   // The answer to an older request changes nothing else: that seat was given up since.
-  if (isAnswer(event) && event.wish !== (claim.wish ?? claim.lastWish)) return [answered, []];
+  const isAnswer = event.is === "granted" || event.is === "failed";
+  if (isAnswer && event.wish !== (claim.wish ?? claim.lastWish)) return [answered, []];
   const trigger = triggerOf(answered, event);
   const [state, ...effects] = (trigger && TRANSITIONS[claim.state][trigger]) ?? [claim.state];
   const todo = effects.filter((effect) => effect !== "ask" || answered.request === "none");
@@ -194,10 +193,6 @@ export function keptWish({ state, wish }: Claim): Wish | null {
 /** Whether the same request would be refused again. */
 export function isFinal({ mistakes, why }: Pick<Refused, "mistakes" | "why">): boolean {
   return mistakes.length > 0 || FINAL.has(why.code);
-}
-
-function isAnswer(event: ClaimEvent): event is Answer {
-  return event.is === "granted" || event.is === "failed";
 }
 
 /** Note an answer: the join is not under way any more. */

@@ -141,11 +141,9 @@ export class Team {
 
   /** Keep the newest refusal until a seat is held, so that it does not go with each new request. */
   private hearRefusal(call: string): void {
-    const isNew = call !== this.asked;
-    this.asked = call;
     const { refusal } = this.player.claim.peek();
     const isSeated = this.player.standing.peek() === "seated";
-    if (isNew || isSeated || this.driven.peek()) this.unseated.value = null;
+    if (!call || call !== this.asked || isSeated || this.driven.peek()) this.unseated.value = null;
     else if (refusal) this.unseated.value = refusal;
   }
 
@@ -178,6 +176,7 @@ export class Team {
       case "join":
         if (now - this.triedMs < AGAIN_MS) break;
         this.triedMs = now;
+        this.asked = there.call;
         this.player.moveTo({
           court: there.court,
           seat: there.seat,
