@@ -332,7 +332,7 @@ env.reset(seed=1)
 while env.agents:
     env.step({})
 _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
-resource.setrlimit(resource.RLIMIT_FSIZE, (30_000, most))
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, most))
 try:
     env.write_record(sys.argv[1])
 except UserError as error:

@@ -21,6 +21,7 @@ from lacoc_shared.messages import (
     Sheet,
     SheetSeat,
 )
+from lacoc_shared.record.recorder import Recorder
 from lacoc_shared.record.schema import FORMAT, Header, Result, Setup, Touch
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
@@ -162,10 +163,16 @@ def write_match(
     """Give a function that writes a match of 40 beats and returns its segment's path.
 
     `close` says whether the segment is closed. If `gives_s` is not 0, a referee adds this time [s].
+    With another `recorder` the file has another form.
     """
 
-    def write(folder: Path, close: bool = True, gives_s: float = 0.0) -> Path:
-        writer = RecordWriter(folder, header())
+    def write(
+        folder: Path,
+        close: bool = True,
+        gives_s: float = 0.0,
+        recorder: Callable[[Path, Header], Recorder] = RecordWriter,
+    ) -> Path:
+        writer = recorder(folder, header())
         writer.sheet(0, sheet)
         writer.scene(0, scene)
         writer.input(0, JoinSeat(0, "Ants", SentFile("robot.toml", b""), None, None, "hash"))

@@ -5,7 +5,6 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
 from mcap.reader import make_reader
@@ -15,6 +14,7 @@ from lacoc_shared import codec
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files, pack
+from lacoc_shared.record.packed import Message, PackedFile, PackedWriter
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Header
 from lacoc_shared.record.writer import RecordWriter
@@ -52,6 +52,50 @@ def test_packing_gives_the_same_record(tmp_path: Path, write_match: WriteMatch) 
         summary = make_reader(file, validate_crcs=True).get_summary()
     assert summary is not None
     assert summary.chunk_indexes[0].compression == "zstd"
+
+
+def test_a_match_can_be_written_packed_at_once(tmp_path: Path, write_match: WriteMatch) -> None:
+    """The file is the one that packing would make, and is there only when the match has ended."""
+    pack.pack([write_match(tmp_path / "live")], tmp_path / "live/m.mcap")
+    folder = tmp_path / "alone"
+    path = write_match(folder, close=False, recorder=PackedWriter)
+    assert [*folder.iterdir()] == []
+    assert write_match(folder, recorder=PackedWriter) == path == folder / "m.mcap"
+    assert [*folder.iterdir()] == [path]
+    assert path.read_bytes() == (tmp_path / "live/m.mcap").read_bytes()
+    with pytest.raises(UserError, match=r"m\.mcap exists already"):
+        write_match(folder, recorder=PackedWriter)
+
+
+def test_two_processes_write_no_file_together(
+    tmp_path: Path, header: Callable[..., Header]
+) -> None:
+    """A packed file is locked while it is written; what a killed process left is overwritten."""
+    (tmp_path / "m.mcap.part").write_bytes(b"half of a match" * 1000)
+    writer = PackedWriter(tmp_path, header())
+    with pytest.raises(UserError, match=r"m\.mcap\.part is being written"):
+        PackedWriter(tmp_path, header())
+    writer.close()
+    assert [*tmp_path.iterdir()] == [writer.path]
+    assert Record.read(writer.path).header == header()
+
+
+def test_a_full_disk_ends_a_match_that_is_written_packed(
+    tmp_path: Path, header: Callable[..., Header]
+) -> None:
+    """The message names the file and the reason, and nothing is left on the disk."""
+    resource = pytest.importorskip("resource")
+    writer = PackedWriter(tmp_path, header())
+    for beat in range(100):
+        writer.snapshot(beat, random.Random(beat).randbytes(5000))
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    try:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (500, unlimited[1]))
+        with pytest.raises(UserError, match=r"m\.mcap can't be written: File too large"):
+            writer.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    assert [*tmp_path.iterdir()] == []
 
 
 def test_damage_loses_only_some_seconds_before_it(
@@ -159,15 +203,15 @@ def test_what_is_packed_is_held(
     """While segments are being packed they are locked, and no other process can pack them."""
     segments = write_segments(tmp_path)
     held: list[bool] = []
-    write = pack._write
+    add_all = PackedFile.add_all
 
-    def watched(some: Sequence[Path], path: Path) -> Any:
+    def watched(file: PackedFile, messages: Sequence[Message]) -> None:
         held.extend(map(files.is_held, segments))
         with pytest.raises(UserError, match="being written or packed by another process"):
             pack.pack(segments, tmp_path / "m.mcap")
-        return write(some, path)
+        add_all(file, messages)
 
-    monkeypatch.setattr(pack, "_write", watched)
+    monkeypatch.setattr(PackedFile, "add_all", watched)
     pack.pack(segments, tmp_path / "m.mcap")
     assert held == [True, True]
     assert [path.name for path in tmp_path.iterdir()] == ["m.mcap"]

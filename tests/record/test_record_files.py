@@ -618,7 +618,7 @@ def test_damage_that_hides_a_chunk_is_told(
 
     It says so too if the number of messages can't be read, because the index is damaged as well.
     """
-    monkeypatch.setattr(pack, "CHUNK_BYTES", 1000)
+    monkeypatch.setattr("lacoc_shared.record.packed.CHUNK_BYTES", 1000)
     path = tmp_path / "m.mcap"
     pack.pack([write_match(tmp_path)], path)
     whole = path.read_bytes()

@@ -306,11 +306,17 @@ def test_a_fork_of_an_older_version_does_not_say_how(source: ForkSource, tmp_pat
             "The script wrong.txt has a mistake. Line 1 can't be used: 'forward'",
         ),
         (("--beat", "120", "--take-back", "999"), "event 999 can't be taken back"),
-        (("--beat", "120", "--out", "keys.txt"), "Cannot make the folder keys.txt: File exists"),
-        (("--beat", "120", "--out", "keys.txt/a"), "Cannot make the folder keys.txt/a: Not a dir"),
+        (
+            ("--beat", "120", "--out", "keys.txt"),
+            "be written to keys.txt: File exists",
+        ),
+        (
+            ("--beat", "120", "--out", "keys.txt/a"),
+            "be written to keys.txt/a: Not a dir",
+        ),
         (
             ("--beat", "120", "--out", "keys.txt", "--times", "2", "--players", "planner,planner"),
-            "Cannot make the folder keys.txt",
+            "No record can be written to keys.txt",
         ),
     ],
 )

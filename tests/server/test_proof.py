@@ -281,7 +281,7 @@ def test_a_record_that_lost_a_part_is_not_proven(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """If a part of a record is lost, the rest is verified and the exit code is 1."""
-    monkeypatch.setattr("lacoc_shared.record.pack.CHUNK_BYTES", 20_000)
+    monkeypatch.setattr("lacoc_shared.record.packed.CHUNK_BYTES", 20_000)
     path = play(tmp_path, 0, 2.0)
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 1

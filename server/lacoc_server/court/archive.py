@@ -10,7 +10,7 @@ from pathlib import Path
 from lacoc_server.court.log import CourtLog
 from lacoc_shared.record.matches import unpacked
 from lacoc_shared.record.pack import pack_in_background
-from lacoc_shared.record.writer import RecordWriter
+from lacoc_shared.record.recorder import Recorder
 
 
 class RecordArchive:
@@ -37,7 +37,7 @@ class RecordArchive:
         """
         self._aside.submit(self._pack, match_id)
 
-    def take(self, match_id: str, writer: RecordWriter | None) -> None:
+    def take(self, match_id: str, writer: Recorder | None) -> None:
         """Write the end of a match's record now; close and pack the record on another thread.
 
         Do nothing if the match has no record.
@@ -53,7 +53,7 @@ class RecordArchive:
         for packing in self._packing:
             packing.wait()
 
-    def _put_away(self, match_id: str, writer: RecordWriter) -> None:
+    def _put_away(self, match_id: str, writer: Recorder) -> None:
         try:
             writer.close()
             self._log.disk(match_id, writer.sync_trouble)

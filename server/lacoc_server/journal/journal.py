@@ -18,6 +18,7 @@ from lacoc_shared import __version__
 from lacoc_shared.codec import encode
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import PROTOCOL, Frame, HealthVerdict
+from lacoc_shared.record.recorder import Recorder
 from lacoc_shared.record.schema import FORMAT, Header, Setup
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import BEATS_PER_S
@@ -50,11 +51,12 @@ class Journal:
         folder: Path | None,
         segment: int = 0,
         measure: Measure | None = None,
+        writer: Callable[[Path, Header], Recorder] = RecordWriter,
     ) -> None:
         self.match = match
         self._measure = measure
         self.writer = (
-            RecordWriter(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
+            writer(folder, _header(match.setup, segment, match.beats + 1)) if folder else None
         )
         self._ticks = 0
         self._last: tuple[object, ...] = ()
@@ -117,7 +119,7 @@ class Journal:
             self.writer.close()
 
     def leave(self) -> None:
-        """Close the record without an end: the next start of its court goes on with the match."""
+        """Close the record without an end, because the match is not over (see the writers)."""
         if self.writer is not None:
             self.writer.leave()
 

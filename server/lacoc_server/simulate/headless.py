@@ -21,7 +21,7 @@ from lacoc_server.world.world import World
 from lacoc_shared.inputs import Input, JoinSeat
 from lacoc_shared.messages import Frame, Refusal, SentFile
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
-from lacoc_shared.record.pack import pack
+from lacoc_shared.record.packed import PackedWriter
 from lacoc_shared.record.schema import Result, Setup
 from lacoc_shared.words import say
 
@@ -156,22 +156,15 @@ def simulate(
     match = Match(setup, World, arena)
     if not match.duration_ticks:
         raise UserError(say("simulate.no-end", arena=setup.arena))
-    packed = folder / f"{setup.match_id}.mcap" if folder else None
-    if packed and packed.exists():
-        raise UserError(say("record.exists", file=str(packed)))
-    journal = Journal(match, folder)
+    journal = Journal(match, folder, writer=PackedWriter)
     try:
         for beat in _play(match, journal, players):
             if watch is not None:
                 watch(beat.frame)
-    except BaseException:  # Ctrl-C too: the match can be played again
         journal.close()
-        if journal.writer is not None:
-            journal.writer.path.unlink()
+    except BaseException:  # Ctrl-C too: the match can be played again
+        journal.leave()
         raise
-    journal.close()
-    if journal.writer is not None and packed is not None:
-        pack([journal.writer.path], packed)
     return match.result()
 
 

@@ -21,6 +21,11 @@ def packed_path(folder: Path, match_id: str) -> Path:
     return folder / f"{match_id}.mcap"
 
 
+def unfinished_path(packed: Path) -> Path:
+    """Return the path that a packed file has until it is complete."""
+    return packed.with_name(f"{packed.name}.part")
+
+
 def odds_path(record: Path, match_id: str) -> Path:
     """Return the path of a match's odds, beside its record (`lacoc replay odds`)."""
     return record.parent / f"{match_id}.odds.json"

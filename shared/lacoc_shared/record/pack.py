@@ -4,33 +4,21 @@ A court starts `python -m lacoc_shared.record.pack FOLDER MATCH_ID...` as anothe
 packing takes longer than a beat.
 """
 
-import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 
-from mcap.writer import Writer
-
-from lacoc_shared import __version__
 from lacoc_shared.command import keep
 from lacoc_shared.command.holding import hold
 from lacoc_shared.command.priority import give_way
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
+from lacoc_shared.record.packed import Message, PackedFile
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE
 from lacoc_shared.record.stream import Stop, walk_bytes
 from lacoc_shared.words import say
-
-CHUNK_BYTES = 1 << 17
-"""Size of a chunk before compression [bytes]: seven seconds of play. If a file is damaged, the
-match is lost from the damaged chunk on. Chunks of this size make a file 1 % larger than those of 1
-MiB; with 64 KiB it is 6 %."""
-
-Message = tuple[str, int, bytes]
-"""Topic, beat and bytes of one message of a record."""
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
@@ -49,7 +37,6 @@ def pack(segments: Sequence[Path], out: Path) -> None:
         UserError: if a segment is locked or can't be read to its end, or if the file can't be
             written or differs from the segments; all segments stay.
     """
-    unfinished = out.with_name(f"{out.name}.part")
     try:
         with ExitStack() as held:
             for segment in segments:
@@ -59,14 +46,13 @@ def pack(segments: Sequence[Path], out: Path) -> None:
                 _compare(*_messages(segments), out)
             else:
                 messages = _whole_match(segments, out)
-                _write(messages, unfinished)
-                _compare(messages, None, unfinished)
-                unfinished.rename(out)
-                files.sync_folder(out.parent)
+                with PackedFile(out) as file:
+                    file.add_all(messages)
+                    file.complete()
+                    _compare(messages, None, file.unfinished)
         for segment in segments:  # closed by now: Windows removes no open file
             segment.unlink(missing_ok=True)
     except OSError as error:
-        _remove(unfinished)
         why = error.strerror or str(error)
         raise UserError(say("pack.no-room", file=str(out), why=why)) from None
 
@@ -83,14 +69,11 @@ def write_packed(messages: Sequence[Message], out: Path) -> None:
     """
     if out.exists():
         raise UserError(say("record.exists", file=str(out)))
-    unfinished = out.with_name(f"{out.name}.part")
     keep.make_folder(out.parent)
     try:
-        _write(messages, unfinished)
-        unfinished.rename(out)
-        files.sync_folder(out.parent)
+        with PackedFile(out) as file:
+            file.add_all(messages)
     except OSError as error:
-        _remove(unfinished)
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-write", path=str(out), why=why)) from None
 
@@ -169,25 +152,6 @@ def _messages(paths: Sequence[Path]) -> tuple[list[Message], Stop | None]:
     return found, wrong
 
 
-def _write(messages: Sequence[Message], path: Path) -> None:
-    with path.open("wb") as file:
-        # The checksum of all data finds damage between the chunks, each of which has its own.
-        writer = Writer(file, chunk_size=CHUNK_BYTES, enable_data_crcs=True)
-        writer.start(profile=PROFILE, library=f"lacoc {__version__}")
-        channels = {
-            topic: writer.register_channel(topic, "msgpack" if kind else "", 0)
-            for topic, kind in KINDS.items()
-        }
-        counts = dict.fromkeys(KINDS, 0)
-        for topic, beat, data in messages:
-            time_ns = beat * BEAT_NS
-            writer.add_message(channels[topic], time_ns, data, time_ns, counts[topic])
-            counts[topic] += 1
-        writer.finish()
-        file.flush()
-        os.fsync(file.fileno())
-
-
 def main(folder: str, *match_ids: str) -> int:
     """Pack matches of a folder; return the exit code.
 
@@ -210,17 +174,10 @@ def main(folder: str, *match_ids: str) -> int:
     return code
 
 
-def _remove(unfinished: Path) -> None:
-    """Remove an unfinished file; do nothing if the disk does not allow it."""
-    with suppress(OSError):
-        unfinished.unlink(missing_ok=True)
-
-
 def _copy(out: Path, *segments: Path) -> int:
-    unfinished = out.with_name(f"{out.name}.part")
     try:
-        _write(_messages(segments)[0], unfinished)
-        unfinished.rename(out)
+        with PackedFile(out) as file:
+            file.add_all(_messages(segments)[0])
     except (UserError, OSError) as error:
         print(error, file=sys.stderr)
         return 2

@@ -19,19 +19,15 @@ from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.command.holding import hold
-from lacoc_shared.inputs import Input
-from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
-from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header, Result, Touch
-from lacoc_shared.words import Phrase, say
+from lacoc_shared.record.recorder import CHANNELS, HEADER, Recorder, no_record
+from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header
+from lacoc_shared.words import say
 
 SYNC_S = 1.0
 """Time between two writes to the disk (fsync) [s]: a power cut loses at most so much."""
 
-_HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEALTH = range(
-    1, len(KINDS) + 1
-)
 _message_head = struct.Struct("<BQHIQQ").pack
 """Layout of a message's head: opcode, length of the rest, channel, sequence, log time, publish
 time."""
@@ -39,7 +35,7 @@ _HEAD_BYTES = 22
 """Number of bytes of this head that the length field includes."""
 
 
-class RecordWriter:
+class RecordWriter(Recorder):
     """One segment of a match's record, open for writing.
 
     If the disk is full, data wait in memory, in order, until `flush` can write them.
@@ -58,25 +54,24 @@ class RecordWriter:
             folder.mkdir(parents=True, exist_ok=True)
             self._file = self.path.open("xb", buffering=0)
         except OSError as error:
-            raise _no_record(self.path, error) from None
+            raise no_record(self.path, error) from None
         hold(self._file)
         self._backlog = bytearray()
         self._write_error = ""
-        self._sync_error: Phrase | None = None
         self._counts = [0] * (len(KINDS) + 1)
         self._first_ns = self._last_ns = header.first_beat * BEAT_NS
         self._channels = [
             Channel(
-                id=number,
+                id=channel,
                 topic=topic,
-                message_encoding="msgpack" if kind else "",
+                message_encoding="msgpack" if KINDS[topic] else "",
                 metadata={},
                 schema_id=0,
             )
-            for number, (topic, kind) in enumerate(KINDS.items(), start=1)
+            for topic, channel in CHANNELS.items()
         ]
-        self._counts[_HEADER] = 1
-        first = Message(_HEADER, self._first_ns, codec.encode(header), self._first_ns, 0)
+        self._counts[HEADER] = 1
+        first = Message(HEADER, self._first_ns, codec.encode(header), self._first_ns, 0)
         # Written in one system call, so that a file with any message also has its header.
         self._put(
             MCAP0_MAGIC
@@ -102,47 +97,6 @@ class RecordWriter:
             self._put(b"")
         if self._backlog:
             raise UserError(say("record.no-room", file=self.path.name, why=self._write_error))
-
-    @property
-    def sync_trouble(self) -> Phrase | None:
-        """Error that the disk reported about data already written; None if there was none."""
-        return self._sync_error
-
-    def input(self, beat: int, item: Input) -> None:
-        """Write an input of the match."""
-        self._write(_INPUT, beat, codec.encode(item))
-
-    def event(self, event: Event) -> None:
-        """Write an event, at its own beat."""
-        self._write(_EVENT, event.beat, codec.encode(event))
-
-    def frame(self, beat: int, encoded: bytes) -> None:
-        """Write a frame, encoded as it is published."""
-        self._write(_FRAME, beat, encoded)
-
-    def touch(self, beat: int, touch: Touch) -> None:
-        """Write which markers were touched in a tick, and where robots were put back."""
-        self._write(_TOUCH, beat, codec.encode(touch))
-
-    def snapshot(self, beat: int, data: bytes) -> None:
-        """Write the state of physics after a beat, as bytes that only the court can read."""
-        self._write(_SNAPSHOT, beat, data)
-
-    def sheet(self, beat: int, sheet: Sheet) -> None:
-        """Write a new sheet."""
-        self._write(_SHEET, beat, codec.encode(sheet))
-
-    def scene(self, beat: int, scene: Scene) -> None:
-        """Write a new scene."""
-        self._write(_SCENE, beat, codec.encode(scene))
-
-    def result(self, result: Result) -> None:
-        """Write the result; a later one replaces it."""
-        self._write(_RESULT, result.beats, codec.encode(result))
-
-    def health(self, beat: int, verdict: HealthVerdict) -> None:
-        """Write how well the match has run so far; a later one replaces it."""
-        self._write(_HEALTH, beat, codec.encode(verdict))
 
     def end(self) -> None:
         """Write the summary, because the match is over. A second call does nothing."""
@@ -215,7 +169,7 @@ class RecordWriter:
 
     def _sync_failed(self, error: OSError) -> None:
         # The error stays: the system may have dropped the data, and then reports no further error.
-        self._sync_error = say(
+        self.sync_trouble = say(
             "record.disk-trouble", file=self.path.name, why=error.strerror or str(error)
         )
 
@@ -241,13 +195,6 @@ class RecordWriter:
         )
         footer = Footer(summary_start=start, summary_offset_start=0, summary_crc=0)
         return end + _bytes(*self._channels, statistics, footer) + MCAP0_MAGIC
-
-
-def _no_record(path: Path, error: OSError) -> UserError:
-    if path.exists():
-        return UserError(say("record.exists", file=str(path)))
-    why = error.strerror or str(error)
-    return UserError(say("record.no-folder", folder=str(path.parent), why=why))
 
 
 def _bytes(*records: McapRecord) -> bytes:

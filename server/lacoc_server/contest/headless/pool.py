@@ -224,9 +224,7 @@ def _is_lost(future: "Future[PlayedAlone | Phrase]") -> bool:
 def _remove_half_record(job: Job) -> None:
     """Remove the unfinished record of a match whose process died; it can be played again."""
     if (record := job.record) is not None:
-        segments = files.segment_paths(record.parent, job.match_id)
-        for path in (*segments, record.with_name(f"{record.name}.part")):
-            path.unlink(missing_ok=True)
+        files.unfinished_path(record).unlink(missing_ok=True)
 
 
 def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> PlayedAlone:

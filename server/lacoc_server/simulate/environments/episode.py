@@ -25,7 +25,7 @@ from lacoc_shared.gait.tables import Level, Posture
 from lacoc_shared.inputs import Input, JoinSeat, KeySeat
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.pack import pack
+from lacoc_shared.record.packed import PackedWriter
 from lacoc_shared.record.schema import Setup
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
@@ -303,8 +303,6 @@ class Episode:
             raise UserError(say("environment.no-record"))
         if file.suffix != ".mcap":
             raise UserError(say("environment.record-name", file=str(file)))
-        if file.exists():
-            raise UserError(say("record.exists", file=str(file)))
         keys: dict[int, list[Input]] = {}
         seqs = [0] * len(self._seqs)
         for beat, seat, level, digit in _PRESSED.iter_unpack(self._pressed):
@@ -313,20 +311,16 @@ class Episode:
         setup = self.begun.setup(self.opening.place, file.stem)
         arena = self.begun.arena
         match = Match(setup, World, arena.folder)
-        journal = Journal(match, file.parent)
-        assert journal.writer is not None
+        journal = Journal(match, file.parent, writer=PackedWriter)
         try:
             for _ in to_play(self.begun.joins, lambda items: journal.beat(items)[0]):
                 pass
             while match.beats < self.match.beats:
                 journal.beat(keys.get(match.beats + 1, ()))
             journal.beat([closing(match.phase)])
-            journal.flush()
             journal.close()
-            pack([journal.writer.path], file)
         except BaseException:  # Ctrl-C too: the record can be written again
-            journal.close()
-            journal.writer.path.unlink(missing_ok=True)
+            journal.leave()
             raise
 
     def _inputs(self, keys: Sequence[Key | None]) -> list[Input]:

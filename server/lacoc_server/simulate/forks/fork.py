@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from lacoc_server.journal.journal import Journal
@@ -9,13 +10,10 @@ from lacoc_server.journal.replay import resume
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate.forks.line import REFEREE, ForkChange, ForkLine
 from lacoc_server.simulate.forks.origin import ForkSource, stem
-from lacoc_shared.command import keep
-from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.inputs import Decide, Input
 from lacoc_shared.messages import DecisionReply, Refusal
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.files import packed_path
-from lacoc_shared.record.pack import read_messages, write_packed
+from lacoc_shared.record.packed import PackedWriter
 from lacoc_shared.record.schema import ForkChanges, Result
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
@@ -69,24 +67,19 @@ def fork(
             fork's record exists already, or it or its folder can't be made.
     """
     before = stem(source, beat, match_id, changes)
-    out = packed_path(folder, match_id) if folder else None
-    if out is not None and out.exists():
-        raise UserError(say("record.exists", file=str(out)))
     match = resume(before.record, folder=arena).match
-    if folder is not None:
-        keep.make_folder(folder)  # before the fork is played, which takes long
-    with Scratch("fork") as scratch:
-        segment = before.record.headers[-1].segment + 1
-        journal = Journal(match, scratch if out else None, segment)
-        try:
-            while match.beats < beat - 1:  # beats in which nothing was recorded
-                journal.beat()
-            forked = _played(source, journal, change or ForkChange(), seconds, out)
-        finally:
-            journal.close()
-        if out is not None and journal.writer is not None:
-            # The fork's own beats are one more segment of the record that it goes on from.
-            write_packed([*before.messages, *read_messages([journal.writer.path])], out)
+    # The fork's own beats are one more segment of the record that it goes on from.
+    segment = before.record.headers[-1].segment + 1
+    packed = partial(PackedWriter, before=before.messages)
+    journal = Journal(match, folder, segment, writer=packed)
+    try:
+        while match.beats < beat - 1:  # beats in which nothing was recorded
+            journal.beat()
+        forked = _played(source, journal, change or ForkChange(), seconds)
+        journal.close()
+    except BaseException:  # Ctrl-C too: the fork can be played again
+        journal.leave()
+        raise
     return forked
 
 
@@ -105,7 +98,6 @@ def _played(
     journal: Journal,
     change: ForkChange,
     seconds: float | None,
-    out: Path | None,
 ) -> Forked:
     match, first = journal.match, journal.match.beats + 1
     _check_phase(match, change)
@@ -121,7 +113,7 @@ def _played(
         line.decided_beat,
         tuple(changes),
         line.left_out,
-        out,
+        None if journal.writer is None else journal.writer.path,
     )
 
 

@@ -11,7 +11,7 @@ from lacoc_server.journal.judge import last_beat
 from lacoc_shared import codec
 from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.record.pack import Message
+from lacoc_shared.record.packed import Message
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import ForkChanges, Header, Origin, Result, Setup
 from lacoc_shared.words import say
