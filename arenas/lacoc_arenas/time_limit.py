@@ -7,6 +7,10 @@ reads or holds a lock. It is counted in looks, and a busy machine looks less oft
 
 The limits are a thousand times what bots need. They decide no match: a match in which a bot does
 not answer has no result.
+
+To ask the system for the processor time of a thread takes longer than most bots need for a frame.
+So the first part of a match's limit is measured by the clock instead (`_BY_CLOCK`). What a busy
+machine adds there is little for the limit.
 """
 
 import ctypes
@@ -23,6 +27,8 @@ from lacoc_shared.command import screen
 from lacoc_shared.words import Phrase, say
 
 LOOK_S = 0.25
+_BY_CLOCK = 0.1
+"""The part of `Most.match_s` that is measured by the clock, not by processor time."""
 _IGNORED_LOOKS = 20
 """If a bot goes on after this many interruptions, the process ends."""
 
@@ -99,7 +105,7 @@ class Timer:
         self.bot = bot
         self._name = bot.encode()[: NAME_BYTES - 1]
         self.used_s = 0.0
-        """Processor time that the bot used in all frames [s]."""
+        """Processor time that the bot used in all frames [s]; the first of it by the clock."""
         self.waited_s = 0.0
         """Time that the bot waited in all frames [s]."""
         _watch()
@@ -153,7 +159,9 @@ class _Call:
         self._timer = timer
         self._is_frame = is_frame
         self._thread = thread
-        self._began_s = time.thread_time()
+        by_clock = timer.used_s < _BY_CLOCK * MOST.match_s
+        self._clock_s = time.perf_counter if by_clock else time.thread_time
+        self._began_s = self._clock_s()
         self._first_s: float | None = None
         """The thread's processor time at the first look [s]."""
         self._last_s = 0.0
@@ -172,7 +180,7 @@ class _Call:
             if self._interrupted:
                 _raise_in(self._thread, None)
         if self._is_frame:
-            self._timer.used_s += time.thread_time() - self._began_s
+            self._timer.used_s += self._clock_s() - self._began_s
             self._timer.waited_s += self._waited_s
 
     def look(self) -> None:

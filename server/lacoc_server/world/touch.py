@@ -43,6 +43,8 @@ class _RobotPart(NamedTuple):
     radius_m: float
     half_m: float
     """Half the distance between the centres of the capsule's two ends."""
+    reach_m: float
+    """Upper bound of the distance of its points from the origin of its limb, at all angles [m]."""
 
 
 class _Limb(NamedTuple):
@@ -50,9 +52,7 @@ class _Limb(NamedTuple):
 
     parts: tuple[_RobotPart, ...]
     body: int
-    """Id of the body that the limb begins with."""
-    reach_m: float
-    """Upper bound of the distance of its points from the origin of `body`, at all angles [m]."""
+    """Id of the body that the limb begins with; its origin is that of the limb."""
 
 
 class _TouchPair(NamedTuple):
@@ -84,6 +84,8 @@ class TouchTest:
         self._from, self._qpos = qpos, self._data.qpos
         self._look()
         probes = list(_probes(model, self._data, markers))
+        self._is_near = False
+        """Whether a robot has a pair that may touch."""
         self._robots = [_Outline(model, self._data, qpos, robot, probes) for robot in robots]
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
@@ -92,13 +94,15 @@ class TouchTest:
         Args:
             gap_m: the largest distance that counts as a touch; negative: only deeper touches count.
         """
-        room_m = _room_m(gap_m)
-        gone = [robot for robot in self._robots if robot.has_gone(room_m)]
-        if gone or any(robot.near for robot in self._robots):
+        room_m, robots = _TOUCH_M + abs(gap_m), self._robots
+        gone = [robot for robot in robots if robot.has_gone(room_m)]
+        if gone or self._is_near:
             self._look()
-        for robot in gone:
-            robot.look_around(room_m)
-        return [robot.touched(gap_m) for robot in self._robots]
+        if gone:
+            for robot in gone:
+                robot.look_around(room_m)
+            self._is_near = any(robot.near for robot in robots)
+        return [robot.touched(gap_m, room_m) if robot.near else () for robot in robots]
 
     def _look(self) -> None:
         """Compute the present positions of all geoms from `qpos`."""
@@ -123,7 +127,8 @@ class _Outline:
         self._model, self._data = model, data
         geoms = robot.geoms.tolist()  # MuJoCo numbers them body by body, outward along each leg
         self._limbs, self._arm_m = _limbs(model, geoms)
-        self._reach_m = self._arm_m + max(limb.reach_m for limb in self._limbs)
+        reaches_m = (part.reach_m for limb in self._limbs for part in limb.parts)
+        self._reach_m = self._arm_m + max(reaches_m)
         self._probes = probes
         # Views: they always show the present values.
         self._pose: Any = qpos.data[robot.root_qpos : robot.root_qpos + 7]
@@ -134,53 +139,57 @@ class _Outline:
             memoryview(data.geom_xmat[:, 2]),
             memoryview(data.geom_xmat[:, 5]),
         )
-        self._seen_from: Sequence[float] = [math.nan] * 7
+        self._at_m: Sequence[float] = (math.nan, math.nan)
+        self._turned: Sequence[float] = (math.nan,) * 4
+        """Quaternion of the body; with `_at_m` the pose for which `near` was found."""
         self._room_m = 0.0
         self.near: list[tuple[_Probe, list[_TouchPair]]] = []
         """All pairs that may touch until the robot `has_gone`, by probe, in their order."""
 
     def has_gone(self, room_m: float) -> bool:
         """Return whether `near` may lack a pair with a distance of at most `room_m`."""
-        now, then = self._pose.tolist(), self._seen_from
-        turned = math.dist(now[3:], then[3:])  # a point at 1 m has moved at most twice as far
-        gone_m = math.dist(now[:2], then[:2]) + 2 * self._arm_m * turned
+        now = self._pose.tolist()
+        turned = math.dist(now[3:], self._turned)  # a point at 1 m has moved at most twice as far
+        gone_m = math.dist(now[:2], self._at_m) + 2 * self._arm_m * turned
         return not gone_m <= _SKIN_M or room_m > self._room_m
 
     def look_around(self, room_m: float) -> None:
         """Find the pairs that are `near`; the positions of bodies must be the present ones."""
-        self._seen_from, self._room_m = self._pose.tolist(), room_m
+        pose, self._room_m = self._pose.tolist(), room_m
+        here_m, self._turned = pose[:2], pose[3:]
+        self._at_m = here_m
+        limbs = [(self._origins_m[limb.body, :2].tolist(), limb.parts) for limb in self._limbs]
         self.near = []
         for probe in self._probes:
             at_m = (probe.x_m, probe.y_m)
-            room_m = probe.radius_m + self._room_m
-            if math.dist(self._seen_from[:2], at_m) <= self._reach_m + room_m + _SKIN_M:
+            apart_m = probe.radius_m + room_m
+            if math.dist(here_m, at_m) <= self._reach_m + apart_m + _SKIN_M:
                 pairs = [
                     _TouchPair(
                         part.geom,
                         part.half_m,
-                        (part.half_m + part.radius_m + room_m) ** 2,
-                        (part.radius_m + room_m) ** 2,
+                        (part.half_m + part.radius_m + apart_m) ** 2,
+                        (part.radius_m + apart_m) ** 2,
                     )
-                    for limb in self._limbs
-                    if math.dist(self._origins_m[limb.body, :2], at_m)
-                    <= limb.reach_m + room_m + _SKIN_M
-                    for part in limb.parts
+                    for origin_m, parts in limbs
+                    for part in parts
+                    if math.dist(origin_m, at_m) <= part.reach_m + apart_m + _SKIN_M
                 ]
                 if pairs:
                     self.near.append((probe, pairs))
 
-    def touched(self, gap_m: float) -> tuple[int, ...]:
+    def touched(self, gap_m: float, room_m: float) -> tuple[int, ...]:
         """Find the markers whose probe the robot touches; geoms must be where they are now.
 
         Args:
             gap_m: the largest distance that counts as a touch.
+            room_m: gap of a part and a probe in the top view [m] up to which they may touch.
         """
+        model, data, distance_m = self._model, self._data, mujoco.mj_geomDistance
         x_m, y_m, axis_x, axis_y = self._x_m, self._y_m, self._axis_x, self._axis_y
-        most_m = _room_m(gap_m)
         touched = []
-        for probe, pairs in self.near:
-            _, _, probe_x_m, probe_y_m, _ = probe
-            for geom, half_m, middle_m2, axis_m2 in pairs:
+        for (marker, probe, probe_x_m, probe_y_m, _), pairs in self.near:
+            for number, (geom, half_m, middle_m2, axis_m2) in enumerate(pairs):
                 dx_m, dy_m = probe_x_m - x_m[geom], probe_y_m - y_m[geom]
                 if dx_m * dx_m + dy_m * dy_m > middle_m2:
                     continue
@@ -188,20 +197,12 @@ class _Outline:
                     end_x_m, end_y_m = half_m * axis_x[geom], half_m * axis_y[geom]
                     if _gap_m2(dx_m, dy_m, end_x_m, end_y_m) > axis_m2:
                         continue
-                if self._distance_m(geom, probe.geom, most_m) <= gap_m:
-                    touched.append(probe.marker)
+                if distance_m(model, data, geom, probe, room_m, None) <= gap_m:
+                    touched.append(marker)
+                    if number:  # the part that touches now is likely to touch in the next tick
+                        pairs.insert(0, pairs.pop(number))
                     break
         return tuple(touched)
-
-    def _distance_m(self, geom: int, probe: int, most_m: float) -> float:
-        model, data = self._model, self._data
-        distance_m: float = mujoco.mj_geomDistance(model, data, geom, probe, most_m, None)
-        return distance_m
-
-
-def _room_m(gap_m: float) -> float:
-    """Return the gap of a part and a probe in the top view [m] up to which they may touch."""
-    return _TOUCH_M + abs(gap_m)
 
 
 def _gap_m2(x_m: float, y_m: float, end_x_m: float, end_y_m: float) -> float:
@@ -220,11 +221,11 @@ def _probes(model: Any, data: Any, markers: Sequence[MarkerInfo]) -> Iterator[_P
             yield _Probe(marker, geom, x_m, y_m, float(model.geom_size[geom, 0]))
 
 
-def _part(model: Any, geom: int) -> _RobotPart:
+def _part(model: Any, geom: int, origin: int) -> _RobotPart:
     radius_m, half_m, _ = model.geom_size[geom].tolist()
     if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
         radius_m, half_m = float(model.geom_rbound[geom]), 0.0
-    return _RobotPart(geom, radius_m, half_m)
+    return _RobotPart(geom, radius_m, half_m, _reach_m(model, geom, origin))
 
 
 def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
@@ -239,12 +240,7 @@ def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
     root = model.body_rootid[model.geom_bodyid[geoms[0]]]
     arms_m = [float(np.linalg.norm(model.body_pos[body])) for body in limbs if body != root]
     return [
-        _Limb(
-            tuple(_part(model, geom) for geom in own),
-            body,
-            max(_reach_m(model, geom, body) for geom in own),
-        )
-        for body, own in limbs.items()
+        _Limb(tuple(_part(model, geom, body) for geom in own), body) for body, own in limbs.items()
     ], max(arms_m)
 
 

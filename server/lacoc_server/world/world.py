@@ -100,6 +100,7 @@ class World:
         self._control = self.data.ctrl
         self._write_control = struct.Struct(f"{self.model.nu}d").pack_into
         self._warned = self.data.warning.number
+        self._no_warning = bytes(self._warned.nbytes)
         self._state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         self._weights = _weights(self.model)
         for seat, robot in enumerate(self.robots):
@@ -132,7 +133,7 @@ class World:
         """
         self._write_control(self._control, 0, *chain.from_iterable(angles))
         self._advance()
-        if any(self._warned.tobytes()):
+        if self._warned.tobytes() != self._no_warning:
             return self._undo()
         mujoco.mj_getState(self.model, self.data, self._state, STATE)
         self.digest = chained(self.digest, self._state.data)
@@ -266,9 +267,7 @@ class World:
 
 def chained(digest: bytes, state: bytes | memoryview) -> bytes:
     """Return the digest of a state, chained to the digest of the tick before it."""
-    following = hashlib.sha256(digest)
-    following.update(state)
-    return following.digest()[:8]
+    return hashlib.sha256(digest + state).digest()[:8]
 
 
 def _robots(model: Any, entries: Sequence[Entry], seats: Sequence[str]) -> list[Robot]:
