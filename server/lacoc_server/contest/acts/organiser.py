@@ -49,7 +49,7 @@ def enter(
     club: str = "",
     by: str = "",
 ) -> Phrase:
-    """Enter a team, or change the files of a team that is in; say what was done.
+    """Enter a team, or change the files of a team that has entered; say what was done.
 
     Args:
         file: the contest file.
@@ -95,7 +95,7 @@ def enter_weighed(
     reason: str,
     club: str = "",
 ) -> Phrase:
-    """Enter a team with a weighed entry, or change the files of a team that is in.
+    """Enter a team with a weighed entry, or change the files of a team that has entered.
 
     Say what was done.
 
@@ -315,13 +315,13 @@ def publish_to(file: Path, folder: Path) -> None:
 def prepare(
     where: ContestFolder, store: FactStore, *, entering: bool = False, headless: bool = False
 ) -> None:
-    """Append the plans of the contest file, and check that a contest can be played.
+    """Append the stages of the contest file to the facts; check that the contest can be played.
 
     Args:
         where: the contest.
         store: its facts.
-        entering: whether teams may still come.
-        headless: whether there are no courts, which could play open matches.
+        entering: whether teams may still enter.
+        headless: whether there are no courts; a stage of open matches needs them.
 
     Raises:
         UserError: if the file has no stage, a stage that is drawn has changed there, or there are

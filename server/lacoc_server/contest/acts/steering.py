@@ -89,10 +89,10 @@ def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused
 
 
 def resuming(contest: Contest, now_ms: int) -> Resumed:
-    """Return the fact that ends a pause or a shift's wait.
+    """Return the fact that ends a pause, or the wait after a shift (a postponement).
 
     Raises:
-        UserError: if games are being called: nothing holds them back.
+        UserError: if neither a pause nor a shift keeps games from being called.
     """
     if not contest.day.is_held(now_ms):
         raise UserError(say("day.not-paused"))
@@ -127,7 +127,7 @@ def announcing(text: str) -> Announced:
 
 
 def substituting(contest: Contest, team: str, substitute: str, reason: str) -> Substituted:
-    """Return the fact that gives a team's place in stages where it has not played to a substitute.
+    """Return the fact by which a substitute takes a team's place where it has not played yet.
 
     Raises:
         UserError: if a team is not in the contest, the substitute has a place of its own in each
@@ -164,7 +164,7 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
 def undrawable(contest: Contest) -> str:
     """Return the newest stage if its draw can be taken back: no game of it has a result.
 
-    Else "".
+    Return "" if there is no such stage.
     """
     newest = contest.stages[-1].name if contest.stages else ""
     return "" if newest in contest.stages_ended_ms else newest

@@ -72,9 +72,9 @@ def apply(book: Book, team: str, entry: ContestEntry, contact: Contact) -> OwnEn
 def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
     """Replace the files of a team by new ones that were weighed in.
 
-    While entries are open, a team that is in uses its new files at once. When entries are closed,
-    or if the team itself still waits, its files wait for the organiser. A team that sends no new
-    picture keeps its old one.
+    While entries are open, a team in the contest plays with its new files at once. When entries are
+    closed, or if the team itself is not approved yet, its files wait for the organiser. A team that
+    sends no new picture keeps its old one.
 
     Raises:
         UserError: if the team has left the contest, or the files can't be written.

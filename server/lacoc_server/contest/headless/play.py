@@ -35,8 +35,8 @@ from lacoc_shared.record.summary import Summary, summary
 from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
-"""Two teams can meet again in the same seats. For each earlier such game, their bots start this
-many ticks later."""
+"""Two teams can meet again in the same seats. For each earlier game of them in these seats, their
+bots start this many ticks later."""
 _MOST_DEATHS = 3
 """How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3
@@ -66,7 +66,7 @@ class _DueGame(NamedTuple):
 
     @property
     def teams(self) -> tuple[str, str]:
-        """Who sits left and right."""
+        """The left and the right team."""
         left, right = self.job.teams
         return left, right
 

@@ -124,7 +124,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     format: Name
     settings: StageSettings = StageSettings()
     after: str = ""
-    """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    """The stage whose ranking is the seeding of this one; "": all teams, in the order of entry."""
     title: dict[Literal["en", "ja"], Name] = {}
     """What people call it, by language; empty: the usual name of its format."""
     draw: Draw = "at-once"
@@ -138,7 +138,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     final_court: str = ""
     """The only court for its final; "": any court."""
     final_break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
-    """Shortest time between its last other game and its final [s]."""
+    """Shortest time between the end of all its other games and its final [s]."""
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""

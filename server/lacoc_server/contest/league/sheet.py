@@ -91,7 +91,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     pause: Break | None
     """The newest pause or break, which may be over; None: there was none."""
     announced: Announced | None
-    """The organiser's line to all; None: there is none."""
+    """The organiser's announcement on all pages; None: there is none."""
     decided: tuple[Decided, ...]
     """What people decided, the newest first."""
     ratings: tuple[Rating, ...]

@@ -1,4 +1,4 @@
-"""Asks all known machines for a later office, and so tells earlier offices of this one."""
+"""Asks all known machines whether a later office is there; an earlier one so hears of this one."""
 
 import threading
 from contextlib import ExitStack

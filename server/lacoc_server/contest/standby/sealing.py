@@ -14,15 +14,15 @@ _NONCE_BYTES = 12
 
 
 class BadSeal(Exception):
-    """The bytes can't be opened: the key or the purpose is another one, or they were changed."""
+    """The bytes can't be decrypted: the key or the purpose is another one, or they were changed."""
 
 
 class Sealing:
     """Encrypts and authenticates messages with a key that is made from a token.
 
     Args:
-        token: the token. A short word that a person chose can be guessed with time: the key is
-            made slowly (scrypt).
+        token: the token. Even a short word that a person chose is slow to guess: the key is made
+            with scrypt.
     """
 
     def __init__(self, token: str) -> None:

@@ -193,11 +193,12 @@ def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTe
 
 
 def _colours(player: SwissTeam) -> list[str]:
-    """Return a history of colours that makes the engine give a team the side that it is due next.
+    """Return colours (sides) of past games that make the engine give a team the side it is due.
 
     The engine forces a change only after the same colour twice. Here a team must change as soon as
     it has sat more often on one side than on the other. So the engine is told that the team had
-    that side's colour twice. If both counts are equal, it is told one of each, the last side last.
+    that side's colour in its last two games. If both counts are equal, it is told one of each, the
+    last side last.
     """
     if not player.sides:
         return []

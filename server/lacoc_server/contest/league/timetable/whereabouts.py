@@ -62,7 +62,7 @@ class SeenCourts(NamedTuple):
 
 
 class ContestPace(NamedTuple):
-    """How fast the contest goes."""
+    """The time now, and how long games and rests take."""
 
     now_ms: int
     """The time, in milliseconds since 1970, UTC."""
@@ -219,7 +219,7 @@ def _waits(
         match: the match.
         start: when it probably begins; None: nobody knows.
         pace: how fast the contest goes.
-        away: the teams that have not come to their game, by its court.
+        away: by court, the teams that have not joined the game that was called there.
     """
     about = fixture(contest, view, match, max(1, match.next_game), stands=True)
     opponent = match.teams[match.teams[0] == team] or ""
