@@ -277,7 +277,7 @@ class Inbox:
     def _frozen(
         self, seat: _SeatDoor, join: Join, assigned: AssignedSeat, token_hash: str
     ) -> JoinSeat:
-        """Seat a team with the name and files that the office froze, whatever its join brings."""
+        """Return a team's join with the name and files that the office fixed, not those it sent."""
         sent = (join.robot, join.postures, join.locomotion)
         differs = any(
             one is not None and (frozen is None or one.data != frozen.data)

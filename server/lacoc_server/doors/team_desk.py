@@ -66,7 +66,7 @@ class TeamDesk:
 
 
 def alone(court: str, assigned: Assigned) -> dict[str, Whereabouts] | None:
-    """Return where the open seats are, at a court that was started alone; at another court None.
+    """Return where the open seats are, if the court was started alone; else None.
 
     Args:
         court: the court's name.
