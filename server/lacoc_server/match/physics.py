@@ -76,7 +76,7 @@ class Physics(Protocol):
 
 @runtime_checkable
 class Restorable(Physics, Protocol):
-    """Physics that can go on from a saved state; that of a record can't."""
+    """Physics that can go on from a saved state; the physics of a record can't."""
 
     def load(self, saved: bytes) -> None:
         """Go on from a state that `save` of the same model returned.
