@@ -1,4 +1,4 @@
-"""Finds which figures that a page shows became worse, so that such a table is not called better."""
+"""Finds the shown figures that a table makes worse, so that it is not called a better table."""
 
 import math
 from typing import NamedTuple
