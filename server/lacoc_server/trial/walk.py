@@ -43,7 +43,7 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Sensed:
-    """The measurements of one tick: means over its steps where so noted, else of its last step."""
+    """The measurements of one tick: of its last physics step, where no mean over all is named."""
 
     load_n: Floats
     """(legs,) normal force between each shank and the floor, mean over the steps [N]."""

@@ -1,7 +1,8 @@
 """Lists the changes that would repair a table, each with its reason.
 
 Each change undoes one mistake of a beginner: in a sign, a number, a leg, a row, the order of rows,
-a side, or half of the cycle. It takes the numbers of the partners, which do not have this mistake.
+a side, or half of the cycle. It uses the numbers of the partners (the opposite legs), which do not
+have this mistake.
 """
 
 from collections.abc import Iterator
