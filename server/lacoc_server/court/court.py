@@ -88,7 +88,7 @@ class Court:
         office: the desk of the contest's office, if it has one: the court then plays only what the
             office assigns.
         outlooks: answers referees who ask what would happen if play went on.
-        key_trials: names the keys of seated robots.
+        key_trials: says what the keys of seated robots do.
         try_outs: lets players try their keys before the match.
     """
 

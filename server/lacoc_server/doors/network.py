@@ -189,7 +189,7 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse requests that arrived, because no beat can take them in; still serve fetches.
+        """Refuse requests to the match, because no beat passes; still answer who only fetches data.
 
         Args:
             why: sentence for the senders.

@@ -120,7 +120,7 @@ class SectionFinding:
     bits: Difference | None = None
     """The first difference in any bit; None: all bits are the same."""
     beyond: Difference | None = None
-    """The first difference that is too large for another arithmetic; None: there is none."""
+    """The first difference that another arithmetic can't explain; None: there is none."""
     distance: float = 0.0
     """Largest distance from the record, in frames and at the section's end [m, rad]."""
 

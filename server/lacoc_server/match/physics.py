@@ -27,7 +27,7 @@ class Fault:
 
 
 class Physics(Protocol):
-    """The robots on a field, and the steps of their physics; see the module."""
+    """The robots on a field, and the steps of their physics."""
 
     @property
     def scene(self) -> Scene:

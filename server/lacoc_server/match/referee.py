@@ -41,7 +41,7 @@ class Illegal(ValueError):
 
 @dataclass(frozen=True)
 class _DecisionRule:
-    """When a decision is legal, and what it does."""
+    """When a kind of decision is legal, and what it does."""
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]

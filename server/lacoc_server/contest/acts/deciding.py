@@ -52,11 +52,11 @@ class WantedDecision(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what further facts would change: teams, matches, ranks, stages that end, the next draw.
+    """Say what would change if more facts were appended: teams, matches, ranks, ends, next draw.
 
     Args:
         facts: the facts of a contest, in their order.
-        more: further facts, which are not appended here.
+        more: the facts to try; they are not appended here.
     """
     last = facts[-1].number if facts else 0
     placed = [
@@ -105,7 +105,7 @@ def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
 
 
 def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[Phrase]:
-    """Say which games, not needed any more and not ended, would be taken back from courts."""
+    """Name the games that would be taken back from courts, because they are not needed any more."""
     stay = {call.id for call in needed(then)}
     for call in was.running:
         if call.id not in stay and call.pairing not in ended:
@@ -211,7 +211,7 @@ def _counts(contest: Contest, result: Played | Replaced) -> bool:
 
 
 def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
-    """Return the fact of a decision.
+    """Return the fact that records an organiser's decision.
 
     Raises:
         UserError: if there is no such match, game or team, or the reason or the points are missing.

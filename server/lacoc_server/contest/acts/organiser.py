@@ -200,7 +200,7 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
     Args:
         store: the facts.
         shown: the draw as the organiser's page showed it, or the same teams in an order made by
-            hand. If a lot decides, it makes the order.
+            hand. If a lot decides, the order follows from the lot.
 
     Raises:
         UserError: if no draw waits or a different one does, or if the reason or the lot is missing;

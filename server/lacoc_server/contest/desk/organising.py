@@ -32,7 +32,7 @@ from lacoc_shared.words import Phrase, render, say
 
 
 def approve(book: Book, asked: Approve) -> Said:
-    """Approve teams: let new ones in, former ones come back, and others use their late files.
+    """Approve teams: they may enter, come back after leaving, or use files that they sent late.
 
     Raises:
         UserError: if a team has neither applied nor taken part before, if it can't come back, or if

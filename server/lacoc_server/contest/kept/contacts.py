@@ -1,4 +1,4 @@
-"""The contacts and clubs of the teams, as each told when it applied.
+"""The contacts and clubs of the teams, as each team gave them when it applied.
 
 Only the organiser reads them.
 """

@@ -1,7 +1,7 @@
 """Copies of records that another machine writes, in the contest's own folder.
 
-A copy grows while the match is played. It is always the beginning of a record, as a killed court
-leaves one, so any court can go on from it.
+A copy grows while the match is played. It is always the beginning of a record, like the
+record of a killed court, so any court can go on from it.
 """
 
 import os
@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 
 
 class Taken(Enum):
-    """The result of a question to another machine for more of a record."""
+    """What came of asking another machine for the next part of a record."""
 
     MORE = "more"
     """The copy has grown."""

@@ -75,7 +75,7 @@ class HandedIn:
     """The gait files as text, under the names that the team gave them."""
     bot: str = ""
     program: bytes | None = None
-    """As in `ContestEntry`."""
+    """Python source of the bot; None: the bot is installed."""
     picture: bytes | None = None
     wrong: FileRefused | None = None
     """The error with all mistakes in workbooks; None: there are no mistakes."""

@@ -132,7 +132,8 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """True: teams of one club do not meet in the first round, or in a group, if it can be avoided.
     """
     met_apart: bool = False
-    """True: teams that met in the stage before are kept apart in the same way."""
+    """True: teams that met in the stage before do not meet again in the first round, or in a group,
+    if it can be avoided."""
     break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
     """Shortest time between the end of the stages before it and its first game [s]."""
     final_court: str = ""
@@ -289,8 +290,8 @@ class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
 class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
     """Everything that has not happened yet is postponed by `by_ms`.
 
-    For this time no game is called. Earliest times of moved matches that are still to come are
-    later by it.
+    For this time no game is called. The earliest times of moved matches that are still to come are
+    postponed too.
     """
 
     by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]

@@ -8,7 +8,7 @@ class Source(msgspec.Struct, frozen=True, tag_field="source", omit_defaults=True
 
 
 class Entrant(Source, frozen=True, tag="entry"):
-    """A team of the draw."""
+    """A team that the draw puts in this place."""
 
     team: str
 
@@ -52,5 +52,6 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     loser_goes_on: bool = False
     """True: the loser has another match. So teams leave the stage here only if nobody wins."""
     only_if_second_won: str = ""
-    """Id of another pairing: this one is played only if the second place wins that one. "":
+    """Id of another pairing: this one is played only if the team in the second place of
+    that one wins it. "":
     always."""

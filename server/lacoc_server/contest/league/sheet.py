@@ -54,7 +54,7 @@ class Later(msgspec.Struct, frozen=True, kw_only=True):
     2"."""
     court: str = ""
     at_ms: int = 0
-    """The probable court and time, as in `Coming`."""
+    """About when it will begin, in milliseconds since 1970, UTC; 0: not known."""
 
 
 class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):

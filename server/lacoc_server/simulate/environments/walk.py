@@ -230,7 +230,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return self.observe(), {}
 
     def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
-        """Let the beats of a step pass, or try a table; see the class.
+        """Let the beats of a step pass, or try a table of key 2.
 
         Returns:
             What is seen; the reward; whether the robot falls (with a table always True); whether

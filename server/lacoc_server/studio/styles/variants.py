@@ -21,8 +21,8 @@ rounds."""
 _ENOUGH, _LEAST = 10, 8
 """Most tables of a round that are tried exactly, and number of good gaits that are enough."""
 _FAR, _NEAR = 2.0, 1.0
-"""Most steps by which a table is changed in a way, at the first request for variants and after many
-requests."""
+"""Largest change of a table in each `Way` [steps], at a student's first request for variants and
+after many requests."""
 _CALMER = 0.85
 """Factor of the steps from one round of trials to the next: with smaller changes, more robots stay
 upright."""

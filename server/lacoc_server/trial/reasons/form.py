@@ -162,7 +162,7 @@ class KeyForm:
 
     @property
     def sequence(self) -> tuple[Posture, ...]:
-        """The postures [rad]."""
+        """The postures of the key's sequence [rad]."""
         rows = np.radians(self.angles_deg).reshape(self.postures, -1)
         return tuple(tuple(map(float, row)) for row in rows)
 
@@ -174,7 +174,7 @@ class KeyForm:
         return TableCell(cell.posture, cell.level, (cell.leg + 2) % self.legs)
 
     def degrees(self, cell: TableCell) -> float:
-        """Return the angle in a cell."""
+        """Return the angle in a cell [deg]."""
         return float(self.angles_deg[cell])
 
     def name(self, cell: TableCell) -> Phrase:

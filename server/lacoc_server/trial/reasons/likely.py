@@ -27,8 +27,8 @@ class Weighed(NamedTuple):
     """A repair, and how probable it is."""
 
     worth: float
-    """Decrease of oddness, plus the gain in thrust, minus how rare the mistake is; on the scale of
-    `KeyForm.oddness_deg`."""
+    """How much less odd the table becomes (`KeyForm.oddness_deg`), plus the gain in thrust, minus
+    how rare the mistake is [deg]."""
     repair: Repair
     is_sure: bool
 

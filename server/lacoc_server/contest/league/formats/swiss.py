@@ -50,7 +50,7 @@ class SwissTeam(msgspec.Struct, kw_only=True):
 
 
 class Swiss(DrawnByRound):
-    """The Swiss format, as described above."""
+    """Pairs teams with equal points, round by round; nobody meets twice where it can be avoided."""
 
     settings = frozenset({"games", "rounds", "tie_breaks"})
     decisive = False
@@ -256,7 +256,7 @@ def fewest_faults(players: Sequence[SwissTeam]) -> list[tuple[SwissTeam, ...]]:
 
 
 def _cost(pair: Sequence[SwissTeam], apart: int, fold: int, many: int) -> int:
-    """Return the cost of a pair; one graver fault costs more than lesser faults in all other pairs.
+    """Return the cost of a pair; a graver fault costs more than lesser faults in all other pairs.
 
     The gravest are those that `faults` counts, in its order. Then comes `apart`, then `fold`.
 

@@ -24,8 +24,8 @@ class Break(msgspec.Struct, frozen=True, kw_only=True):
 def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:
     """Return the break that is on now, or else the newest one; None: there was none.
 
-    It follows from the facts alone, so its end may be past: whoever shows it compares that with the
-    clock.
+    It follows from the facts alone, so its end may be past: whoever shows it compares its end with
+    the clock.
 
     Args:
         contest: the contest.

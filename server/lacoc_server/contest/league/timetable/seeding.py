@@ -90,11 +90,11 @@ def kept_apart(
 def moved_apart(
     contest: Contest, plan: Planned, how: Format, entries: tuple[str, ...]
 ) -> dict[str, Phrase]:
-    """Say for each team whose seed is not its rank which pairs were kept apart by that.
+    """Return, by team, a phrase that says why its seed differs from its rank: pairs kept apart.
 
-    These are the pairs with the team itself. If it only made room for others, all such pairs are
-    named. The result is empty if the order is not the plan's: a lot or the organiser made it, or
-    the ranking was corrected since.
+    It names the pairs that the team itself would be in. If the team only made room for others, it
+    names all pairs that were kept apart. The result is empty if the order is not the plan's: a lot
+    or the organiser made it, or the ranking was corrected since.
 
     Args:
         contest: the contest.

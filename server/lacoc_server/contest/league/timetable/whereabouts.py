@@ -121,7 +121,7 @@ def whereabouts(
     Args:
         contest: the contest.
         courts: its courts.
-        pace: how fast it goes.
+        pace: the time now, and how long games and rests take.
         begins: when and where matches probably begin, by pairing, from `starts`.
     """
     calls = {team: call for call in contest.running for team in call.teams}
@@ -218,7 +218,7 @@ def _waits(
         view: the stage of the match.
         match: the match.
         start: when it probably begins; None: nobody knows.
-        pace: how fast the contest goes.
+        pace: the time now, and how long games and rests take.
         away: by court, the teams that have not joined the game that was called there.
     """
     about = fixture(contest, view, match, max(1, match.next_game), stands=True)
@@ -340,7 +340,7 @@ def starts(
         contest: the contest.
         coming: its matches that are still to come, from `foreseen`.
         seen: the courts, in the order in which they are filled.
-        pace: how fast it goes.
+        pace: the time now, and how long games and rests take.
     """
     now_ms, game, rest_ms = pace
     plans = {view.name: view.plan for view in contest.stages}
