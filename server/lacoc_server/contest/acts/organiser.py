@@ -1,4 +1,4 @@
-"""What an organiser does with a contest: enter teams, take them out, draw, play it offline."""
+"""What an organiser does with a contest: enter teams, take them out, draw, play without courts."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -263,7 +263,7 @@ def play_headless(
         file: the contest file.
         steer: the bot that steers teams without a bot.
         engine: plays the games; it is opened and closed here.
-        progress: told about each change.
+        progress: called with the numbers of decided and of all matches, after each change.
         tell: called for each team whose bot pressed keys that its gait does not have.
 
     Returns:

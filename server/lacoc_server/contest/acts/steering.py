@@ -147,7 +147,7 @@ def substituting(contest: Contest, team: str, substitute: str, reason: str) -> S
 
 
 def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
-    """Return the stages in which a team could give up its place, each as the tuple of its teams.
+    """Return, for each stage in which a team could give up its place, the teams of the stage.
 
     These are the stages that are not over, and in which the team has a place but has played no
     game.
@@ -162,9 +162,9 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
 
 
 def undrawable(contest: Contest) -> str:
-    """Return the newest stage if its draw can be taken back: no game of it has a result.
+    """Return the name of the newest stage if its draw can be taken back; else "".
 
-    Return "" if there is no such stage.
+    It can if no game of the stage has a result.
     """
     newest = contest.stages[-1].name if contest.stages else ""
     return "" if newest in contest.stages_ended_ms else newest

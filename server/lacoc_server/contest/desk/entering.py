@@ -1,4 +1,4 @@
-"""Requests of a team: apply to take part, hand in other files, read how its entry stands."""
+"""Requests of a team: apply to take part, hand in other files, read the state of its entry."""
 
 from dataclasses import replace
 from typing import Literal
@@ -110,7 +110,7 @@ def picture(book: Book, team: str) -> bytes | None:
 
 
 def own(book: Book, team: str) -> OwnEntry:
-    """Return how a team's own entry stands, for the team's page.
+    """Return the state of a team's entry, for the team's own page.
 
     Raises:
         UserError: if the facts can't be read, or a new token can't be written.

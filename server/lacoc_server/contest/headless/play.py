@@ -168,15 +168,15 @@ def _still_due(
     known: Sequence[Played | Replaced],
     facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
-    """Yield those results in `known` whose games are still to be played by the newest facts.
+    """Yield those of the known results whose games, by the newest facts, have none yet.
 
     Another program may just have appended another result of such a game, a fact after which the
     game is not played, or other files of a team.
 
     Args:
-        newest: computes the contest.
+        newest: computes the contest from facts.
         before: the facts by which the games were due.
-        known: the results.
+        known: results of games that were computed meanwhile.
         facts: the facts now.
     """
     was, now = _files(newest.of(before)), _files(newest.of(facts))

@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 
 
 class Taken(Enum):
-    """What came of asking another machine for the next part of a record."""
+    """What another machine's answer added to the copy of a record."""
 
     MORE = "more"
     """The copy has grown."""
@@ -90,7 +90,7 @@ def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
     Args:
         match_id: the match.
         have: length in bytes of each file that is here, by its name.
-        part: what came.
+        part: what the other machine sent.
     """
     segment = files.segment_name(Path(part.file))
     is_segment = segment is not None and segment[0] == match_id

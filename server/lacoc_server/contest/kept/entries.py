@@ -258,7 +258,7 @@ def _is_installed(module: str) -> bool:
 
 
 class EntryFolder:
-    """The folder of all frozen entries; each has a folder of its own, named by its hash.
+    """The folder of all weighed-in entries; each has a folder of its own, named by its hash.
 
     Args:
         path: the folder; it is made when the first entry comes.

@@ -72,7 +72,7 @@ class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
 
 
 class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
-    """A team takes the place of another one in all stages in which that one has not played yet."""
+    """A substitute takes a team's place in all stages in which the team has not played yet."""
 
     team: Name
     """The team that gives its place up; it leaves the contest."""
@@ -81,7 +81,7 @@ class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
 
 
 class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
-    """A team may use other files although entries are closed."""
+    """The files with which a team plays are replaced by others."""
 
     team: Name
     files: str

@@ -32,8 +32,8 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     rank: int
-    """The team's rank, from 1. Tied teams share a rank, and the next ranks are left out; so do
-    teams that went out of a knockout in the same round."""
+    """The team's rank, from 1. Tied teams share a rank, and so do teams that went out of a knockout
+    in the same round. The next ranks are then left out."""
     won: int = 0
     drawn: int = 0
     lost: int = 0

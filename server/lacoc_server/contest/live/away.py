@@ -62,7 +62,7 @@ class Attempts(Generic[T]):
     Args:
         do: returns the result, or None if it has to be tried again.
         pause_s: time between the beginnings of two attempts [s].
-        aside: runs `do`.
+        aside: runs `do` on another thread.
     """
 
     def __init__(self, do: Callable[[], T | None], pause_s: float, aside: Executor) -> None:

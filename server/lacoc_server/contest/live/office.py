@@ -46,7 +46,7 @@ class Office:
 
     Args:
         store: the facts.
-        entries: the frozen files of the teams.
+        entries: the files of the teams, as they were weighed in.
         token_of: returns a team's token.
         links: the courts by name, in the order in which they are filled; None: a court that is not
             connected yet.

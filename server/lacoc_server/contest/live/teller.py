@@ -28,8 +28,8 @@ from lacoc_shared.words import say
 _LOOK_MS = 1000
 """Time between two estimates of when matches begin, if nothing else has changed [ms]."""
 _AGAIN_MS = 3000
-"""A court is told again after this time even without a change, because it may have restarted
-[ms]."""
+"""After this time a court is told again where the teams are, even without a change: it may have
+restarted [ms]."""
 _BETWEEN_MS = 60_000
 """Guess for the time from the call of a game to the start of play, until a game has ended [ms]."""
 _SALT_BYTES = 16

@@ -1,4 +1,4 @@
-"""Asks all known machines whether a later office is there; an earlier one so hears of this one."""
+"""Looks for a later office on all known machines, and tells earlier ones of this office."""
 
 import threading
 from contextlib import ExitStack

@@ -40,7 +40,7 @@ class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
     """Asks what the office has that the second machine lacks. The answer is `There`."""
 
     address: str
-    """Address at which the office could be asked if it went on at the second machine."""
+    """Address of the office if it went on at the second machine."""
     facts: Annotated[int, msgspec.Meta(ge=0)]
     """How many facts the second machine has."""
     last: str

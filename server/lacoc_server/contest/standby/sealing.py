@@ -47,7 +47,7 @@ class Sealing:
             purpose: what the message must be for.
 
         Raises:
-            BadSeal: if it was not sealed with this key for this purpose.
+            BadSeal: if it was not encrypted with this key for this purpose.
         """
         nonce, hidden = sealed[:_NONCE_BYTES], sealed[_NONCE_BYTES:]
         try:
@@ -57,5 +57,5 @@ class Sealing:
 
 
 REQUEST = b"request"
-"""Purpose of each request. The purpose of its answer is the sealed request itself, so that an
+"""Purpose of each request. The purpose of its answer is the encrypted request itself, so that an
 answer to an earlier request can't be sent again."""

@@ -1,4 +1,4 @@
-"""Checks a game of a published contest: compares its result with its record, which it proves."""
+"""Checks a game of a published contest: compares result and record, and proves the record."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

@@ -92,7 +92,7 @@ def _leaving(match: ContestMatch) -> list[str]:
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
-    """Place the teams in a bracket: the best two can meet only in the final, and so on.
+    """Place the teams in a bracket, so that the best two can meet only in the final, and so on.
 
     The list has a team or a bye for each place of round 1: as many as the next power of two. The
     best teams have the byes.

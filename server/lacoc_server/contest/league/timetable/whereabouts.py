@@ -42,8 +42,8 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _LONGEST = 20
-"""A game that seems to have lasted this many times the usual length is ignored: the clock was
-set."""
+"""A game that seems to have lasted this many times the usual length is ignored: the
+machine's clock was set meanwhile."""
 _COUNTED = 15
 """The usual length of a game is computed from so many of the newest games."""
 _STEP_S = 5
@@ -150,7 +150,7 @@ def whereabouts(
 
 
 def _news(contest: Contest) -> dict[str, Phrase]:
-    """Say for each team the newest decision about one of its matches since its last game.
+    """Return, by team, the newest decision about one of its matches since its last game, in words.
 
     A decision that has no effect is left out, for example about a team that was replaced since.
     """
