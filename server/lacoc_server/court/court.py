@@ -121,7 +121,7 @@ class Court:
         self._frame = b""
         """The newest published frame, encoded; empty before the first."""
         self._trouble: Phrase | None = None
-        """The problem with the record's disk (`record.*`); None: there is none."""
+        """The problem with the record's disk (texts `record.*`); None: there is none."""
         self._told_gains: tuple[Gains, ...] = ()
         """What each robot would gain next, as the newest health message said."""
         self._waits = 0
@@ -289,7 +289,7 @@ class Court:
 
     @property
     def _assigned(self) -> Assigned:
-        """What this match was assigned; at a court that was started alone, its present settings.
+        """The assignment of this match; at a court that was started alone, its present settings.
 
         After a restart the settings have new tokens, which the interrupted match does not have.
         """

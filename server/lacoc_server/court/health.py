@@ -165,7 +165,7 @@ class MatchHealth:
         """Count a beat and the outcomes of its inputs.
 
         Returns:
-            The verdict, if the record gets one now: in every second of PLAYING, and in a beat with
+            The verdict, if one is due for the record: once a second in PLAYING, and in a beat with
             a result. Otherwise None.
         """
         self._count(inputs, beat)

@@ -1,4 +1,4 @@
-"""A court's place on the network: what arrives in a beat, and what goes out after it.
+"""Connects a court to the network: takes in what arrives before a beat, sends what follows.
 
 No message is handled on Zenoh's threads: once a beat, `poll` takes the messages and requests that
 wait in queues, always in the same order. The inbox checks who sent them. A request is answered once

@@ -23,7 +23,7 @@ class Fault:
     seat: int
     """Index of the seat whose robot failed; `NOBODY` if that is not known."""
     why: Phrase
-    """Why it failed (`fault.*`)."""
+    """Why it failed (texts `fault.*`)."""
 
 
 class Physics(Protocol):

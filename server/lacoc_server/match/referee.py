@@ -31,7 +31,7 @@ class Illegal(ValueError):
     """Raised when a decision is not legal.
 
     Args:
-        why: the reason for the referee (`why.*`).
+        why: the reason for the referee (texts `why.*`).
     """
 
     def __init__(self, why: Phrase) -> None:

@@ -48,7 +48,7 @@ _LATE_S = 30.0
 """Several courts at real time stay open for this long after the end [s], not for `_FAREWELL_S`:
 pages that follow the director show the end 20 s later, and then the result."""
 _COPY_S = 60.0
-"""Longest wait for the records of courts on other machines, after `_FAREWELL_S` or `_LATE_S` [s]."""
+"""Longest wait for records of courts on other machines, after `_FAREWELL_S` or `_LATE_S` [s]."""
 _SHOWN_S = 60.0
 """A court on another machine shows the last match for this long [s]. Then the court closes it, so
 that its record can be copied whole."""

@@ -1,4 +1,4 @@
-"""Finds the shown figures that a table makes worse, so that it is not called a better table."""
+"""Finds figures of a page that a new table makes worse, so that it is not called better."""
 
 import math
 from typing import NamedTuple

@@ -210,7 +210,7 @@ def cell_name(robot: RobotSpec, digit: int, postures: int, place: CellPlace) -> 
 
 
 def is_mirrored(robot: RobotSpec) -> bool:
-    """Return whether each leg has an opposite one: the legs counted from the end."""
+    """Return whether each leg is opposite to the leg with the same index from the end."""
     return len(robot.legs) % 2 == 0 and all(
         math.dist((one.position_m.x, one.position_m.y), (-other.position_m.x, other.position_m.y))
         < _OPPOSITE_M
