@@ -1,4 +1,4 @@
-"""Commands for the day of a contest: from a terminal, the decisions of the office's page."""
+"""Commands for the day of a contest: what an organiser decides on the page /office."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, time

@@ -31,7 +31,7 @@ class Opening(msgspec.Struct, frozen=True):
     place: int = 0
     """Index of the start place in the arena file's list; the right robot begins opposite to it."""
     late_ticks: tuple[int, ...] = ()
-    """For each seat, the number of ticks of play that pass before a key of it counts."""
+    """For each seat, the number of ticks of play that pass before its keys count."""
     seat: int = 0
     """The seat of the learner, in an environment with a bot."""
 
@@ -121,7 +121,7 @@ def start_place_count(arena: Arena) -> int:
 
 
 def begun_at(arena: Arena, place: int) -> Arena:
-    """Return the arena with the start place of this index as its first one."""
+    """Return the arena with the start place of this index moved to the front of its list."""
     found = _listed(arena.settings)
     if place == 0 or found is None:
         return arena

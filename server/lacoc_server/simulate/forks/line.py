@@ -86,7 +86,7 @@ class ForkLine:
 
     @property
     def is_over(self) -> bool:
-        """True if the fork ends after the beats so far."""
+        """True if the fork is over, so that no further beat is played."""
         match = self.match
         if self._limit is not None and match.beats >= self._limit:
             return True
