@@ -220,7 +220,7 @@ class Judge:
             yield self.section
 
     def _judge(self, number: int) -> list[str]:
-        """Judge one beat; return how it differs from the record, as names of the texts `differs.*`."""
+        """Judge one beat; return its differences from the record, by name (texts `differs.*`)."""
         record = self._record
         self._beat = number
         with fits_together(record):
