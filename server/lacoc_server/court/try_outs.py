@@ -53,7 +53,7 @@ class _LoneRobot:
 
     @property
     def scene(self) -> Scene:
-        """The field with the robot."""
+        """The scene of the field with the robot, for drawing."""
         return self._world.scene
 
     @property

@@ -127,7 +127,7 @@ class Recorded:
         self._faults = {event.beat: event for event in record.events if event.kind == "fault"}
 
     def move(self, beat: int) -> None:
-        """Go to a beat."""
+        """Go to another beat: from now on, return what is recorded of that one."""
         self.beat = beat
         self.has_frame = beat in self._frames
         if self.has_frame:

@@ -63,7 +63,7 @@ class Build:
     entries: tuple[Entry, ...]
 
     def world(self) -> World:
-        """Build the world."""
+        """Build the world from these inputs."""
         setup = self.setup
         return World(arenas.from_settings(setup.arena, setup.settings, self.folder), self.entries)
 

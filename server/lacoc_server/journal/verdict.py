@@ -1,4 +1,4 @@
-"""The verdict of a verification."""
+"""The verdict on a record, from all that its verification found."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

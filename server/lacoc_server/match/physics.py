@@ -31,7 +31,7 @@ class Physics(Protocol):
 
     @property
     def scene(self) -> Scene:
-        """The model for drawing."""
+        """The scene: all that pages need to draw the model."""
 
     @property
     def scene_hash(self) -> bytes:

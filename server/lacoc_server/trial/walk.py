@@ -32,12 +32,12 @@ class Span(NamedTuple):
 
     @property
     def ticks(self) -> int:
-        """Number of ticks."""
+        """Number of ticks of the measurement."""
         return self.end - self.first
 
     @property
     def seconds(self) -> float:
-        """Length [s]."""
+        """Length of the measurement [s]."""
         return self.ticks / BEATS_PER_S
 
 

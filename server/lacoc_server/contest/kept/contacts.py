@@ -18,7 +18,7 @@ class Contact(msgspec.Struct, frozen=True, omit_defaults=True):
     reach: str = ""
     """An e-mail address or a telephone number, as the team wrote it."""
     club: str = ""
-    """Its school or club."""
+    """The team's school or club."""
 
 
 class Contacts:

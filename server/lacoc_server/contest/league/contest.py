@@ -121,7 +121,7 @@ class Day(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that follows from the facts."""
+    """A contest as its facts make it: teams, stages, matches, tables and pauses."""
 
     teams: tuple[Team, ...]
     """The teams, in the order in which they entered."""

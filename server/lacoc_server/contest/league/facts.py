@@ -14,7 +14,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
 VERSION = 1
-"""Version of the layout of facts."""
+"""Version of the format of facts."""
 
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
 Draw = Literal["at-once", "organiser"]
@@ -213,7 +213,7 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     record: str = ""
     """File name of the court's record."""
     record_hash: str = ""
-    """Hash of that file (`lacoc_server.contest.kept.folder.file_hash`)."""
+    """Hash of the record's file (`lacoc_server.contest.kept.folder.file_hash`)."""
     steer: str = ""
     """Name of the bot that steered teams without one, in a game without a network; "": no team
     needed it, or an older version wrote the fact."""

@@ -38,11 +38,11 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     drawn: int = 0
     lost: int = 0
     points: int = 0
-    """2 for a match won, 1 for a draw."""
+    """The team's points: 2 for a match won, 1 for a draw."""
     scored: int = 0
-    """Points in all its games."""
+    """Points that the team scored in all its games."""
     conceded: int = 0
-    """Points of its opponents in these games."""
+    """Points that its opponents scored in these games."""
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""
@@ -62,7 +62,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     tie_breaks: tuple[str, ...]
     """Codes in the order in which they rank."""
     rows: tuple[Standing, ...]
-    """The best first."""
+    """A row for each team, the best first."""
 
 
 class _Tally:

@@ -47,7 +47,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
     }
 
     OPTIONS = ("place", "late_ticks", "seat")
-    """Options of `reset`."""
+    """Names of the options of `reset`."""
 
     def __init__(
         self,

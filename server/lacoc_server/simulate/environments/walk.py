@@ -127,7 +127,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     }
 
     OPTIONS = ()
-    """Options of `reset`: none."""
+    """Names of the options of `reset`: there are none."""
 
     def __init__(
         self,

@@ -22,7 +22,7 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """A fork to play."""
 
     file: str
-    """The record."""
+    """Path of the record."""
     beat: int
     take_back: int | None = None
     restart: tuple[str, ...] = ()

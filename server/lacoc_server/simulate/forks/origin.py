@@ -23,7 +23,7 @@ _CALL = "fork"
 
 @dataclass(frozen=True)
 class ForkSource:
-    """A record to fork."""
+    """A record from which forks go on."""
 
     record: Record
     messages: tuple[Message, ...]

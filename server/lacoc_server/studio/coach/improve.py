@@ -34,11 +34,11 @@ class Size(StrEnum):
     """How much of a table may change."""
 
     CELL = "cell"
-    """One number."""
+    """One number may change."""
     THREE = "three"
-    """At most three numbers."""
+    """At most three numbers may change."""
     TABLE = "table"
-    """All numbers."""
+    """All numbers may change."""
 
 
 IsOver = Callable[[], bool]

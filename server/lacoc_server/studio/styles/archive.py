@@ -13,7 +13,7 @@ from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.goal import Goal
 
 _SPEEDS, _AROUSALS = 6, 5
-"""Cells along each axis."""
+"""Number of cells along each axis of the map."""
 _SPEED_PART, _AROUSAL_PART = 1 / 15, 1 / 50
 """Size of a cell along each axis, as a part of a speed: that of a foot at a leg's length from a
 joint which turns with AngMin. The cells of the workshop's robot are 20 and 6 mm/s wide."""
@@ -71,7 +71,7 @@ class MapGrid(NamedTuple):
 
 
 class Elite(NamedTuple):
-    """The best gait of a cell."""
+    """The best gait of a cell of the map."""
 
     angles_deg: Angles
     figures: Figures

@@ -1,4 +1,4 @@
-"""Finds when parts other than feet carry the robot, or balance is lost, and a number as cause."""
+"""Finds when other parts than feet carry the robot or balance is lost, and the number to blame."""
 
 import math
 from collections.abc import Iterator

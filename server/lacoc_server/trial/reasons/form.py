@@ -23,11 +23,11 @@ from lacoc_shared.words import Phrase, say
 SAME_DEG = 6.0
 """Two angles that differ by at most this much [deg] count as equal."""
 _MATES = 0.25
-"""Weight of differences between mates, if those between partners have the weight 1: mates often
-swing less than each other."""
+"""Weight of differences between mates (legs that do the same at the same time); differences between
+partners have the weight 1. Mates often swing by different amounts."""
 _OFFSET = np.array([1.0, 0.8, 0.8])
-"""Part of a constant difference between mates that is ignored, for each level: legs stand at
-different angles."""
+"""Part of a constant difference between mates that is ignored, for Root, 1st and 2nd joints: legs
+stand at different angles."""
 _OPPOSITE_M = 0.005
 
 

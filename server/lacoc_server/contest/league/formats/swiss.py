@@ -32,9 +32,9 @@ class SwissTeam(msgspec.Struct, kw_only=True):
 
     team: str
     number: int
-    """Its place in the seeding, from 1."""
+    """The team's place in the seeding, from 1."""
     points: int = 0
-    """2 for a match won, 1 for a draw."""
+    """The team's points so far: 2 for a match won, 1 for a draw."""
     met: set[str] = msgspec.field(default_factory=set)
     sides: list[int] = msgspec.field(default_factory=list)
     """For each match with a game: 1 if it sat left, −1 if right."""
