@@ -52,7 +52,7 @@ class WantedDecision(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what would change if more facts were appended: teams, matches, ranks, ends, next draw.
+    """Say what would change if more facts were appended: teams, matches, ranks, the next draw.
 
     Args:
         facts: the facts of a contest, in their order.

@@ -168,7 +168,7 @@ def _still_due(
     known: Sequence[Played | Replaced],
     facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
-    """Yield those of the known results whose games, by the newest facts, have none yet.
+    """Yield those of the known results whose games, by the newest facts, have no result yet.
 
     Another program may just have appended another result of such a game, a fact after which the
     game is not played, or other files of a team.

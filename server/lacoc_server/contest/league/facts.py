@@ -103,7 +103,7 @@ class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=Tru
     places: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """How many first places must be decided before a sequential stage ends early."""
     confidence: Annotated[float, msgspec.Meta(ge=0.5, lt=1.0)] = 0.95
-    """Probability with which these places must be the right ones before the stage ends early."""
+    """Probability with which the first places must be right to end a sequential stage early."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Number of groups of a round robin."""
     third_place: bool = False

@@ -42,7 +42,7 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
     scored: int = 0
     """Points that the team scored in all its games."""
     conceded: int = 0
-    """Points that its opponents scored in these games."""
+    """Points that the team's opponents scored in its games."""
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""

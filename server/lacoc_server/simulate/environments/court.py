@@ -164,7 +164,7 @@ class AgentCourt:
         return digits[number]
 
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
-        """Return the key that an action presses; for an action of angles, steer and return None.
+        """Return the key that an action presses; for angles, steer the robot and return None.
 
         Raises:
             UserError: if the action space does not have the action.

@@ -31,7 +31,7 @@ _WALKS = 0.25
 _SIDE = 0.5
 """A variant goes sideways with at most this part of its speed forward."""
 _PERIOD, _SPEED = 1.25, 1.35
-"""A period this many times longer, or a speed this many times higher, differs by one step."""
+"""A period this many times longer, or a speed this many times higher, counts as one step."""
 
 
 class Variant(NamedTuple):

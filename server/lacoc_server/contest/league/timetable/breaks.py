@@ -16,9 +16,9 @@ class Break(msgspec.Struct, frozen=True, kw_only=True):
     until_ms: int
     """Its end, in milliseconds since 1970, UTC; 0: it lasts until the organiser ends it."""
     fixture: Phrase | None = None
-    """Name of the match after it: "Semi-final 1"; None: no match is known to follow."""
+    """Name of the match after the break: "Semi-final 1"; None: no match is known to follow."""
     who: tuple[Phrase, Phrase] | None = None
-    """The left and the right side of that match, as far as they are known."""
+    """The left and the right side of the match after the break, as far as they are known."""
 
 
 def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:

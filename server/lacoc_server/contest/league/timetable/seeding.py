@@ -79,10 +79,10 @@ def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, 
 def kept_apart(
     contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return an order of teams with fewer first meetings of teams that the plan keeps apart.
+    """Return an order of teams in which fewer of those to keep apart are certain to meet.
 
-    These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
-    changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
+    To keep apart are teams of one club (`apart`), and teams that have met before (`met_apart`). The
+    order changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
     return _set_apart(_apart(contest, plan, how, len(order)), order)
 
