@@ -81,7 +81,7 @@ def kept_apart(
 ) -> tuple[str, ...]:
     """Return an order of teams in which fewer of those to keep apart are certain to meet.
 
-    To keep apart are teams of one club (`apart`), and teams that have met before (`met_apart`). The
+    A plan may keep apart teams of one club (`apart`), and teams that met before (`met_apart`). The
     order changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
     return _set_apart(_apart(contest, plan, how, len(order)), order)
