@@ -239,7 +239,7 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Begin a new section, and return the physics for the match: what is recorded of it.
+        """Begin a new section; return physics that answers the match from the record.
 
         Without robots there is no section, and an empty world is returned: nothing moves in it.
         """

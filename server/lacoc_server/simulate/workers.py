@@ -26,8 +26,8 @@ _END_S = 5.0
 _WAIT_S = 1.0
 """Time after which the wait for an answer stops, to look whether a bot blocks the process [s]."""
 _MOST_MISSED = 60
-"""Number of waits of `_WAIT_S` in a row. If a process's thread that watches the bot did not run in
-them, the bot blocks the process, which is ended. On a busy machine some waits may pass like this.
+"""A process is ended if its thread that watches the bot did not run in this many waits of `_WAIT_S`
+in a row: then the bot blocks the process. On a busy machine it may miss a few waits.
 """
 
 
