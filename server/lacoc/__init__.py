@@ -119,7 +119,7 @@ def simulate(
 def _play(
     bots: tuple[str, str], arena: str, seconds: float | None, robot: str, folder: Path
 ) -> MatchArrays:
-    """Play a match, and read its record in the folder; errors are as of `simulate`."""
+    """Play a match and return its record, read from `folder`; raise errors as `simulate` does."""
     from lacoc_arenas.arena import load
     from lacoc_server.contest.headless.pool import Job, first_number, match_id, play_alone
     from lacoc_server.simulate.headless import seated
@@ -172,7 +172,7 @@ def _need(*packages: str, extra: str) -> None:
     """Check that packages are installed.
 
     Raises:
-        UserError: if one is not; it says what to install.
+        UserError: if a package is not installed; the message says what to install.
     """
     if missing := [name for name in packages if find_spec(name) is None]:
         extras = dict.fromkeys(("server", extra))

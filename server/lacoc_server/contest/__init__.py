@@ -1,1 +1,1 @@
-"""A whole contest: entries, facts, matches at courts or without a network, and its checks."""
+"""Runs a whole contest: keeps entries and facts, has the matches played, and checks the results."""

@@ -88,7 +88,7 @@ class Court:
         office: the desk of the contest's office, if it has one: the court then plays only what the
             office assigns.
         outlooks: answers referees who ask what would happen if play went on.
-        key_trials: names the keys of seated robots.
+        key_trials: says what the keys of seated robots do.
         try_outs: lets players try their keys before the match.
     """
 
@@ -121,9 +121,9 @@ class Court:
         self._frame = b""
         """The newest published frame, encoded; empty before the first."""
         self._trouble: Phrase | None = None
-        """The problem with the record's disk (`record.*`); None: there is none."""
+        """The problem with the record's disk (texts `record.*`); None: there is none."""
         self._told_gains: tuple[Gains, ...] = ()
-        """What the newest health message said that each robot would gain."""
+        """What each robot would gain next, as the newest health message said."""
         self._waits = 0
         """Number of beats skipped in a row because the disk refuses writes."""
         if left is None:
@@ -152,8 +152,8 @@ class Court:
         """Give the match its beats until `stopping` returns True; then finish the record.
 
         An error in the loop ends the court but not its match: when the court is started again, it
-        goes on with the match. So it does with an assigned match that is not over when the court
-        is stopped, because the office waits for the result.
+        goes on with the match. It also goes on with an assigned match that was not over when the
+        court was stopped, because the office waits for the result.
         """
         pace = self._pace
         self._archive.pack(self.match_id)
@@ -289,9 +289,9 @@ class Court:
 
     @property
     def _assigned(self) -> Assigned:
-        """What this match was assigned; at a court that was started alone, its present settings.
+        """The assignment of this match; at a court that was started alone, its present settings.
 
-        After a restart these have new tokens, which the interrupted match does not have.
+        After a restart the settings have new tokens, which the interrupted match does not have.
         """
         assigned, own = self._journal.match.assigned, self._settings.assigned
         return own if assigned is None or assigned.is_alone else assigned

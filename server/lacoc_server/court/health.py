@@ -23,9 +23,9 @@ from lacoc_shared.words import Phrase, say
 _LEAST_FACTOR = 1e-4
 """Smallest real-time factor that is used; it avoids a division by zero."""
 _STEP_M = 0.01
-"""Shortest straight piece of a robot's way that is counted [m], because a body sways in place."""
+"""Shortest straight piece of a robot's path that counts [m]; shorter ones may be a body's sway."""
 _PUT_M = 0.05
-"""A robot this far from its last counted point did not walk there: it was put there [m]."""
+"""Distance from the last counted point [m] from which a robot did not walk: it was put there."""
 _CARRIED = 2
 """Most surplus commands of a second (more than the 10 repeats) that are counted in the next one:
 with jitter, one second has 11 repeats and the next has 9.
@@ -33,7 +33,7 @@ with jitter, one second has 11 repeats and the next has 9.
 
 
 class _WalkedWay:
-    """How far one robot walks.
+    """Measures how far one robot walks.
 
     Args:
         walked_m: how far it had walked before the court was killed [m].
@@ -42,14 +42,14 @@ class _WalkedWay:
     def __init__(self, walked_m: float) -> None:
         self.walked_m = walked_m
         self._corner: tuple[float, float] | None = None
-        """The last counted point of the way [m]; None: there is none since the way was paused."""
+        """The last counted point of the robot's path [m]; None: there is none since `pause`."""
 
     def pause(self) -> None:
-        """Do not count the way from here to the robot's next position."""
+        """Do not count the path from here to the robot's next position."""
         self._corner = None
 
     def go(self, centre_m: tuple[float, float]) -> None:
-        """Add the way to the robot's position, once it is far enough from the last point."""
+        """Add the distance from the last counted point to the robot's position, if long enough."""
         step_m = math.dist(self._corner, centre_m) if self._corner else math.inf
         if step_m < _STEP_M:
             return
@@ -165,7 +165,7 @@ class MatchHealth:
         """Count a beat and the outcomes of its inputs.
 
         Returns:
-            The verdict, if the record gets one now: in every second of PLAYING, and in a beat with
+            The verdict, if one is due for the record: once a second in PLAYING, and in a beat with
             a result. Otherwise None.
         """
         self._count(inputs, beat)

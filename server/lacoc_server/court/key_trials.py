@@ -39,7 +39,7 @@ class KeyTrials:
         """The trials by the files of robot and gait; those asked for last are at the end."""
 
     def __call__(self, seat: Seat, may_begin: bool) -> tuple[str, ...]:
-        """Return what each key of a seat does (names of `move.*`), up to the first untried key.
+        """Return what each key of a seat does (texts `move.*`), up to the first untried key.
 
         Args:
             seat: the seat.

@@ -20,9 +20,9 @@ class Pace:
     Args:
         now_s: monotonic time.
         speed: at 2 two beats pass in 20 ms.
-        offset_s: shift of the beats against multiples of the beat on the machine's monotonic clock.
-            All processes share that clock, so different offsets keep courts from working at the
-            same moment.
+        offset_s: shift of the beats [s] against multiples of 20 ms on the machine's monotonic
+            clock. All processes share that clock, so different offsets keep courts from working at
+            the same moment.
     """
 
     def __init__(self, now_s: float, speed: float = 1.0, offset_s: float = 0.0) -> None:

@@ -20,7 +20,7 @@ from lacoc_shared.seat import WHY_NO, No, Phase
 from lacoc_shared.words import say
 
 EVERY_TICKS = 2
-"""Ticks from one picture to the next."""
+"""Ticks from one picture (the robot's pose) to the next."""
 _KEPT_TICKS = 25
 """Ticks between two kept states: the next request goes on from a kept state, not from the start."""
 
@@ -53,7 +53,7 @@ class _LoneRobot:
 
     @property
     def scene(self) -> Scene:
-        """The field with the robot."""
+        """The scene of the field with the robot, for drawing."""
         return self._world.scene
 
     @property
@@ -70,7 +70,7 @@ class _LoneRobot:
             until: tick at which the walk ends; no picture is later.
 
         Returns:
-            The pictures, fewer than were asked for if physics stopped.
+            The pictures (encoded poses), fewer than were asked for if physics stopped.
         """
         same = min((key.tick for key in {*keys} ^ {*self._keys}), default=until)
         self._kept = [one for one in self._kept if one.tick <= same]

@@ -90,7 +90,7 @@ files.
 
 
 class Door(NamedTuple):
-    """Counts of one seat since the court was started."""
+    """Counts of the messages for one seat since the court was started."""
 
     heard: int
     """Number of valid commands."""
@@ -114,7 +114,7 @@ class _SeatDoor:
         self.asking = ""
         """The team of the newest join; "": none since the seat was empty."""
         self.wanted = ""
-        """The name that the newest join came with."""
+        """The team's name as the newest join asked for it."""
         self.heard = 0
         """Number of valid commands."""
         self.notes: tuple[Phrase, ...] = ()
@@ -134,7 +134,7 @@ MISTAKES_TOLD = 500  # a file of garbage has thousands, and an answer is one mes
 
 
 class Inbox:
-    """The seats of a court and their holders.
+    """Checks what arrives for the seats of a court, and knows who holds them.
 
     Args:
         keys: key expressions of the court; seals cover them.
@@ -277,7 +277,7 @@ class Inbox:
     def _frozen(
         self, seat: _SeatDoor, join: Join, assigned: AssignedSeat, token_hash: str
     ) -> JoinSeat:
-        """Seat a team with the name and files that the office froze, whatever its join brings."""
+        """Return a team's join with the name and files that the office fixed, not those it sent."""
         sent = (join.robot, join.postures, join.locomotion)
         differs = any(
             one is not None and (frozen is None or one.data != frozen.data)

@@ -1,7 +1,7 @@
 """The links of a court's seats: their round trips, and the delay that makes them equal.
 
 Pure: the court's clock comes in as arguments. A command names the newest frame that its sender had,
-and the court knows when it sent that frame. So no round trip needs a client's clock.
+and the court knows when it sent that frame. So round trips are measured without a client's clock.
 
 A contest may make its links equal: then an answer to a frame takes effect a fixed delay after the
 frame was sent. The delay is the same for every seat. Commands that arrive earlier are held until
@@ -100,7 +100,7 @@ class Links:
         return self._links[seat].trip
 
     def late(self, seat: int) -> int:
-        """Return how many of a seat's keys came after the common delay had ended."""
+        """Return how many of a seat's keys arrived too late for the common delay."""
         return self._links[seat].late
 
     def begin(self, now_s: float, match: int, beat: int) -> None:

@@ -1,8 +1,8 @@
-"""A court's place on the network: what arrives in a beat, and what goes out after it.
+"""Connects a court to the network: takes in what arrives before a beat, sends what follows.
 
-No message is handled on Zenoh's threads: once a beat, `poll` empties the rings and desks, always in
-the same order. The inbox decides what can be believed. A request is answered once the match has
-taken it in and the record is written. An outbox sends the rest.
+No message is handled on Zenoh's threads: once a beat, `poll` takes the messages and requests that
+wait in queues, always in the same order. The inbox checks who sent them. A request is answered once
+the match has taken it in and the record is written. An outbox sends the rest.
 """
 
 from collections import deque
@@ -46,7 +46,7 @@ _FETCHES_PER_BEAT = 8
 
 
 _Told = Done | Copied | Whereabouts | Outlook | TryOutReply
-"""Answers to requests that put nothing into the match."""
+"""Answers to requests from which the match gets no input."""
 _Judged = Input | _Told | Refusal
 _Later = Callable[[], _Judged | None]
 """A function that is called in each beat until it returns the outcome of a request."""
@@ -136,7 +136,7 @@ class CourtNetwork:
             self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
         self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk)))
         self._waiting: dict[RequestQueue, tuple[Request, _Later]] = {}
-        """The request at each desk that is still being judged; the requests behind it wait too."""
+        """By queue, the request that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
         self._scene_desk = session.desk(keys.scene, _FETCH_DESK)
         self._log_desk = session.desk(keys.event, _FETCH_DESK)
@@ -189,7 +189,7 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse requests that arrived, because no beat can take them in; still serve fetches.
+        """Refuse requests to the match, because no beat passes; still answer who only fetches data.
 
         Args:
             why: sentence for the senders.

@@ -1,7 +1,7 @@
 """Which tokens open which seat of a court: those of the match that is assigned.
 
-Pure. A token of a team opens its seat with the files that the office froze. Whoever has the token
-of an open seat brings a name and files.
+Pure. A team's token opens its seat; its files are those that the office fixed before. Whoever has
+the token of an open seat sends a name and files.
 """
 
 from collections.abc import Collection, Iterator
@@ -14,7 +14,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Openings:
-    """The tokens of all seats; nothing opens one before the first match."""
+    """The tokens that open each seat; before the first match no token opens a seat."""
 
     def __init__(self) -> None:
         self._assigned = self._before = WAITING
@@ -44,7 +44,7 @@ class Openings:
 
 
 def frozen_join(index: int, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
-    """Make the join of a team with its frozen files.
+    """Make the join of a team, with the files that the office fixed before.
 
     Args:
         index: the seat's index.

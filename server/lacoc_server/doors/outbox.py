@@ -11,7 +11,7 @@ from lacoc_shared.network.session import Publisher
 
 
 class Outbox:
-    """Sends in the order of the court's calls; close it before the network session."""
+    """Sends messages in the order of the court's calls; close it before the network session."""
 
     def __init__(self) -> None:
         self._waiting: SimpleQueue[tuple[Publisher, bytes] | None] = SimpleQueue()

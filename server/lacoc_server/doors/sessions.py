@@ -1,4 +1,4 @@
-"""The sessions of a court: which session holds which seat, and why the others ended."""
+"""The sessions of a court: which session holds which seat, and why earlier ones ended."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -35,7 +35,7 @@ class Why(StrEnum):
 
 
 class AnyToken(msgspec.Struct):
-    """The token of a request, whatever else the request has."""
+    """Reads only the token of a request, of whatever kind the request is."""
 
     token: str
 

@@ -18,7 +18,7 @@ from lacoc_shared.words import say
 
 
 class TeamDesk:
-    """Keeps what the office told last, and shows each asker its own part of it.
+    """Keeps what the office told last, and tells each team its own part of it.
 
     Args:
         teams: where each team plays, by the hash of its token; None: nothing is known until the
@@ -66,7 +66,7 @@ class TeamDesk:
 
 
 def alone(court: str, assigned: Assigned) -> dict[str, Whereabouts] | None:
-    """Return where the open seats are, at a court that was started alone; at another court None.
+    """Return where the open seats are, if the court was started alone; else None.
 
     Args:
         court: the court's name.

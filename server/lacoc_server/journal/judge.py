@@ -60,12 +60,12 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Digest in the newest recorded frame; without a frame, the digest of `world`."""
+        """Hash of the physics' state in the newest recorded frame; if there is none, `world`'s."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
     def place(self, seat: int, place: Place) -> None:
-        """Note that the match puts a robot at a place."""
+        """Note that the match puts a seat's robot at a start place."""
         self._places.append((seat, place))
 
     def step(self, angles: Sequence[Posture]) -> Fault | None:
@@ -127,7 +127,7 @@ class Recorded:
         self._faults = {event.beat: event for event in record.events if event.kind == "fault"}
 
     def move(self, beat: int) -> None:
-        """Go to a beat."""
+        """Go to another beat: from now on, return what is recorded of that one."""
         self.beat = beat
         self.has_frame = beat in self._frames
         if self.has_frame:
@@ -153,7 +153,7 @@ class Judge:
     Args:
         record: the record to judge.
         folder: folder of its arena, if the arena is not installed.
-        snapshots: snapshots by beat, at which sections begin and end.
+        snapshots: snapshots by beat; they cut the match into the sections to simulate.
 
     Raises:
         UserError: if the record does not describe a match, or the arena is not installed and no
@@ -164,8 +164,8 @@ class Judge:
         self.worlds = Worlds()
         """Keeps the world that was built last."""
         self.section: Section | None = None
-        """The section that is being filled; just after a snapshot it has no steps. None: the field
-        is empty.
+        """The section (the beats since a snapshot) that is being filled; it has no steps just after
+        the snapshot. None: no robot is on the field.
         """
         self.difference: Difference | None = None
         """The first difference, at which judging stops; None: none was found so far."""
@@ -192,10 +192,10 @@ class Judge:
             self.match = Match(record.header.setup, self._make, folder)
 
     def sections(self) -> Iterator[Section]:
-        """Judge beat by beat, up to the first difference.
+        """Judge beat by beat, up to the first difference from the record.
 
         Yields:
-            Each section, once its last beat is judged.
+            Each section (the beats between two snapshots), once its last beat is judged.
 
         Raises:
             UserError: if the record's messages contradict each other.
@@ -220,7 +220,7 @@ class Judge:
             yield self.section
 
     def _judge(self, number: int) -> list[str]:
-        """Judge one beat; return the names of its differences from the record (`differs.*`)."""
+        """Judge one beat; return its differences from the record, by name (texts `differs.*`)."""
         record = self._record
         self._beat = number
         with fits_together(record):
@@ -239,9 +239,9 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Make the physics of a match: recorded physics, with which a new section begins.
+        """Begin a new section; return physics that answers the match from the record.
 
-        Without robots it is a world instead, because nothing moves there.
+        Without robots there is no section, and an empty world is returned: nothing moves in it.
         """
         world = World(arena, entries)
         scene, model_hash = self._other_model(world)
@@ -264,7 +264,7 @@ class Judge:
 
         Returns:
             The recorded scene and the recorded hash of the model if another kind of machine made
-            them, else (None, None). Either is also None if the beat did not record it.
+            them, else (None, None). Each is also None if the record has none for this beat.
         """
         beat = max(0, self._beat)
         made_by = header_at(self._record, beat).arithmetic.get("model")

@@ -63,9 +63,9 @@ class Unfinished:
 def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if it was left unfinished; else None.
 
-    Two kinds of matches are passed over. One is a match whose files are held by a running process,
-    such as another court of this name. The other is a match with a small file without a header: its
-    court was killed while it opened the match.
+    Two kinds of matches are passed over. One is a match whose files a running process still has
+    open, such as another court of this name. The other is a match with a small file without a
+    header: its court was killed while it opened the match.
 
     Args:
         folder: folder of the records.
@@ -129,7 +129,7 @@ def last_result(folder: Path, court: str, arena: Arena) -> Unfinished | None:
 
 
 def _check_origin(record: Record, name: MatchName, arena: Arena) -> None:
-    """Check that a record is of the match named by its files, and of this arena.
+    """Check that a record is of this arena, and of the match that its file name names.
 
     Raises:
         UserError: if it is not.

@@ -1,8 +1,8 @@
 """A record played again: verified by physics, or continued where it ended.
 
-The games are judged on the recorded poses, over the whole match (`judge`). Physics is simulated
-section by section, each from the snapshot before it, so that another kind of machine can't drift
-far from the record.
+The rules judge the recorded poses of the whole match again (`judge`). Physics is simulated in
+sections, each from one snapshot to the next. So the poses that another kind of machine computes
+can't drift far from the record.
 """
 
 import os
@@ -25,7 +25,7 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.words import say
 
 _SECTIONS_PER_PROCESS = 4
-"""Fewest sections for each process: its start takes as long as simulating two or three sections."""
+"""Least number of sections for each process, whose start takes as long as two or three sections."""
 
 
 def verify(
@@ -34,7 +34,7 @@ def verify(
     bound: float = BOUND,
     processes: int | None = None,
 ) -> Iterator[int | Verdict]:
-    """Judge a record again, simulate its sections again, and compare.
+    """Prove a record: judge its match again, simulate its physics again, and compare.
 
     Args:
         record: the record to verify.
@@ -72,12 +72,12 @@ def verify(
 
 @dataclass(frozen=True)
 class ResumedMatch:
-    """A match that can go on."""
+    """A match rebuilt from its record, which can go on."""
 
     match: Match
     distance: float | None = None
-    """Distance of this machine's arithmetic from the record after the newest snapshot [m, rad];
-    None: every bit is the same.
+    """Largest distance of the poses that this machine computed from the recorded ones, after the
+    newest snapshot [m, rad]; None: every bit is the same.
     """
 
 
@@ -85,7 +85,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
     """Continue a match where its record ends.
 
     Up to the newest snapshot the recorded poses take the place of physics; only the rest is
-    simulated. There another arithmetic must stay within `BOUND` of the record.
+    simulated. In that rest, poses of another arithmetic may differ by at most `BOUND`.
 
     Args:
         record: record of a court that was killed; it may be cut anywhere.
@@ -129,7 +129,7 @@ def resume(record: Record, at: int | None = None, folder: Path | None = None) ->
 
 
 def _simulated(judge: Judge, bound: float, processes: int) -> Iterator[SectionFinding]:
-    """Simulate each section of a record as soon as `judge` has reached it; yield in their order."""
+    """Simulate each section of a record once `judge` has judged it; yield the findings in order."""
     if processes <= 1:
         worlds = Worlds()
         for section in judge.sections():
@@ -153,7 +153,7 @@ def _processes(record: Record, wanted: int | None) -> int:
 
 
 _worlds = Worlds()
-"""Worlds of a process that simulates sections."""
+"""The newest world of this process, kept from one section to the next."""
 
 
 def _begin() -> None:

@@ -1,8 +1,8 @@
 """A section of a match: the beats from a snapshot, or from new robots, to the next snapshot.
 
 A section holds everything that its simulation needs, so sections can be simulated side by side. A
-simulation reports two comparisons with the record: where bits first differ, and where the distance
-first exceeds what another arithmetic can explain.
+simulation reports two comparisons with the record: where bits first differ, and where poses first
+differ by more than another arithmetic can explain.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ FRAME_FIELDS = (
     "scene",
     "state-hash",
 )
-"""Names of the fields of a frame (`differs.*`), in the order of `Frame`."""
+"""Names of the fields of a frame (texts `differs.*`), in the order of `Frame`."""
 
 BOUND = 1e-5
 """Largest distance from the record [m, rad] that another arithmetic may reach in a section."""
@@ -40,7 +40,7 @@ BOUND = 1e-5
 _ROUNDING = 2.0**-23
 """Added to the bound, because poses are recorded as float32 [m, rad]."""
 _NO_DIGEST = bytes(8)
-"""Digest before the first tick."""
+"""Hash of the physics' state (digest) before the first tick."""
 
 
 class Difference(NamedTuple):
@@ -48,7 +48,7 @@ class Difference(NamedTuple):
 
     beat: int
     what: tuple[str, ...]
-    """Names of the parts that differ (`differs.*`)."""
+    """Names of the parts that differ (texts `differs.*`)."""
 
 
 @dataclass(frozen=True)
@@ -56,21 +56,21 @@ class Build:
     """Inputs from which a world is built."""
 
     number: int
-    """Number of the build in its match, from 0."""
+    """Number of worlds that were built in this match before."""
     setup: Setup
     folder: Path | None
     """Folder of the arena, if it is not installed."""
     entries: tuple[Entry, ...]
 
     def world(self) -> World:
-        """Build the world."""
+        """Build the world from these inputs."""
         setup = self.setup
         return World(arenas.from_settings(setup.arena, setup.settings, self.folder), self.entries)
 
 
 @dataclass(frozen=True)
 class Step:
-    """A beat of a section: what the match asks of physics, and what the record has for it."""
+    """A beat of a section: what the match asks of physics, and what is recorded of the beat."""
 
     beat: int
     places: tuple[tuple[int, Place], ...]
@@ -84,7 +84,7 @@ class Step:
     poses: bytes | None
     """Poses in the beat's frame; None: it has no frame."""
     digest: bytes
-    """Digest of the frame, or of the last frame before it."""
+    """Hash of the physics' state in the beat's frame, or in the last frame before the beat."""
 
 
 @dataclass
@@ -95,7 +95,7 @@ class Section:
     start: bytes | None
     """The snapshot that the section starts from; None: it starts with the robots as built."""
     digest: bytes
-    """The last recorded digest before the section's first step."""
+    """Hash of the physics' state in the last frame before the section's first step."""
     steps: list[Step] = field(default_factory=list)
     end: bytes | None = None
     """The snapshot after the last step; None: there is none."""
@@ -120,7 +120,7 @@ class SectionFinding:
     bits: Difference | None = None
     """The first difference in any bit; None: all bits are the same."""
     beyond: Difference | None = None
-    """The first difference that is too large for another arithmetic; None: there is none."""
+    """The first difference that another arithmetic can't explain; None: there is none."""
     distance: float = 0.0
     """Largest distance from the record, in frames and at the section's end [m, rad]."""
 
@@ -129,7 +129,7 @@ class SectionFinding:
 
         Args:
             beat: the beat.
-            what: name of the part that differs (`differs.*`).
+            what: name of the part that differs (texts `differs.*`).
             far: whether the difference is too large to come from another computer's rounding.
         """
         self.bits = _joined(self.bits, beat, what)
@@ -213,10 +213,10 @@ def _step(step: Step, before: bytes, world: World, found: SectionFinding, bound:
 def _end(
     saved: bytes, step: Step, before: bytes, world: World, found: SectionFinding, bound: float
 ) -> None:
-    """Compare the world with the snapshot at the end, and the snapshot with the frame of its beat.
+    """Compare the world with a section's last snapshot, and the snapshot with its beat's frame.
 
-    The frame has the hash of the snapshot's state, so any machine can check that part exactly. The
-    world is then in the state of the snapshot.
+    The frame has the hash of the snapshot's state, so any machine can check the second comparison
+    exactly. Afterwards the world has the state of the snapshot.
     """
     if world.save() != saved:
         apart = world.apart(saved)
@@ -244,10 +244,10 @@ def _apart(recorded: bytes, poses: bytes) -> float:
 
 
 def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> bool:
-    """Return whether recorded touches can be true if no distance differs by more than `bound` [m].
+    """Return whether the recorded touches agree with `world` within `bound` [m].
 
-    Each robot must have touched every marker that it touches more deeply than `bound` in `world`,
-    and no marker from which it is farther than `bound` there.
+    A robot that is deeper than `bound` in a marker of `world` must have touched it in the record.
+    A robot that is farther than `bound` from a marker of `world` must not have touched it.
     """
     surely, perhaps = world.touched(gap_m=-bound), world.touched(gap_m=bound)
     return len(recorded) == len(surely) and all(

@@ -1,4 +1,4 @@
-"""The verdict of a verification."""
+"""The verdict on a record, from all that its verification found."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,11 +10,11 @@ from lacoc_shared.record.schema import Header
 from lacoc_shared.words import Phrase, say
 
 _ORDER = ("frame-missing", *FRAME_FIELDS)
-"""Order in which a beat's differences are listed; all others come after them."""
+"""Names of the differences that are listed first, in this order; all others follow."""
 
 
 class VerdictKind(StrEnum):
-    """The three verdicts."""
+    """The three verdicts on a record."""
 
     SAME = "same"
     """Every recorded bit is the same as the bit computed from the inputs."""
@@ -40,10 +40,10 @@ class Verdict:
     differs_at: int | None = None
     """First beat that differs; None: no beat does."""
     distance: float = 0.0
-    """Distance of the worst section from the record [m, rad]; 0 if the record differs."""
+    """Largest distance of a section's poses from the record [m, rad]; 0 for the kind `DIFFERS`."""
     worst: tuple[int, int] | None = None
-    """First and last beat of the worst section; None: no section has other bits, or the record
-    differs.
+    """First and last beat of the section with this distance; None: no section has other bits, or
+    the kind is `DIFFERS`.
     """
 
     @property
@@ -128,7 +128,7 @@ def may_differ(headers: Sequence[Header], finding: SectionFinding) -> bool:
 
 
 def other_arithmetic(record: Mapping[str, str], here: Mapping[str, str]) -> Phrase | None:
-    """Say on which machines record and replay were computed; None if all bits agree on both."""
+    """Name the machines of a record and of its replay; return None if both give the same bits."""
     if not record:
         return say("verdict.no-arithmetic")
     if arithmetic.same(record, here):

@@ -23,15 +23,15 @@ class Fault:
     seat: int
     """Index of the seat whose robot failed; `NOBODY` if that is not known."""
     why: Phrase
-    """Why it failed (`fault.*`)."""
+    """Why it failed (texts `fault.*`)."""
 
 
 class Physics(Protocol):
-    """The robots on a field, and the steps of their physics; see the module."""
+    """The robots on a field, and the steps of their physics."""
 
     @property
     def scene(self) -> Scene:
-        """The model for drawing."""
+        """The scene: all that pages need to draw the model."""
 
     @property
     def scene_hash(self) -> bytes:
@@ -76,7 +76,7 @@ class Physics(Protocol):
 
 @runtime_checkable
 class Restorable(Physics, Protocol):
-    """Physics that can go on from a saved state; that of a record can't."""
+    """Physics that can go on from a saved state; the physics of a record can't."""
 
     def load(self, saved: bytes) -> None:
         """Go on from a state that `save` of the same model returned.

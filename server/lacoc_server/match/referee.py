@@ -31,7 +31,7 @@ class Illegal(ValueError):
     """Raised when a decision is not legal.
 
     Args:
-        why: the reason for the referee (`why.*`).
+        why: the reason for the referee (texts `why.*`).
     """
 
     def __init__(self, why: Phrase) -> None:
@@ -41,7 +41,7 @@ class Illegal(ValueError):
 
 @dataclass(frozen=True)
 class _DecisionRule:
-    """When a decision is legal, and what it does."""
+    """When a kind of decision is legal, and what it does."""
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]

@@ -194,7 +194,7 @@ class MatchState:
         return next(seat.team for seat in self.seats if seat.id == seat_id)
 
     def missing(self) -> list[Phrase]:
-        """List everything that the match still needs to become READY (`why.*`)."""
+        """List everything that the match still needs to become READY (texts `why.*`)."""
         reasons = []
         for seat in self.seats:
             if seat.join is None:
@@ -295,7 +295,7 @@ class MatchState:
         """End play and log the result.
 
         Args:
-            why: phrase of `over.*`.
+            why: phrase of the texts `over.*`.
         """
         self.ended = why
         self.enter(Phase.FINISHED)

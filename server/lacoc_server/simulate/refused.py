@@ -1,16 +1,16 @@
-"""Counts keys that a bot presses in vain: its gait does not have them."""
+"""Counts keys that a bot presses in vain: its gait does not have them, or their level is closed."""
 
 from lacoc_shared.messages import Frame
 from lacoc_shared.seat import No
 
 _IN_VAIN = (No.NO_SUCH_KEY, No.LEVEL_CLOSED)
-"""Reasons that last for the whole match; only these refusals are counted. Those after an [x] and in
-a freeze are part of the game.
+"""Reasons that last for the whole match; only refusals for these are counted. Refusals after an [x]
+and in a freeze are part of the game.
 """
 
 
 class RefusedKeys:
-    """Counts, for each seat, pressed keys that are refused in the whole match.
+    """Counts for each seat the pressed keys that every beat of the match would refuse.
 
     Args:
         seats: number of seats.

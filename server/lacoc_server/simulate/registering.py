@@ -1,4 +1,4 @@
-"""Tells Gymnasium of the environments; it imports them only when one is made."""
+"""Registers the environments with Gymnasium, which imports them only when it makes one."""
 
 import gymnasium
 

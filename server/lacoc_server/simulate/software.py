@@ -1,4 +1,4 @@
-"""Names the software that decides how a match goes; results are kept under its hash."""
+"""Computes a hash of the software that decides how a match goes; kept results carry it."""
 
 import hashlib
 import platform
@@ -22,8 +22,8 @@ _SOURCES = (".py", ".toml", ".xml", ".txt")
 def software() -> str:
     """Return a hash of all software that decides how a game goes.
 
-    It is the source of LACOC and of the packages with games, robots and bots, and the versions of
-    MuJoCo, numpy and Python with the arithmetic of this machine.
+    This is the source code of LACOC and of the packages with games, robots and bots; the versions
+    of MuJoCo, numpy and Python; and the arithmetic of this machine.
     """
     digest = hashlib.blake2b(digest_size=16)
     for name in (*_PACKAGES, *_others()):

@@ -24,10 +24,10 @@ T = TypeVar("T")
 _SPAWN = get_context("spawn")
 _END_S = 5.0
 _WAIT_S = 1.0
-"""How long to wait for an answer before looking whether a bot blocks the process [s]."""
+"""Time after which the wait for an answer stops, to look whether a bot blocks the process [s]."""
 _MOST_MISSED = 60
 """A process is ended if its thread that watches the bot did not run in this many waits of `_WAIT_S`
-in a row: then the bot blocks the process. On a busy machine a few waits may pass without a look.
+in a row: then the bot blocks the process. On a busy machine it may miss a few waits.
 """
 
 
@@ -63,8 +63,8 @@ class Workers:
         jobs: number of processes; None: one for each core.
         background: whether these processes give way to all others.
         limit_s: longest time for a job [s]; after this its process is ended.
-        again: how often a job whose process was lost, or ended after `limit_s`, is given to a new
-            one: for jobs that give the same result each time.
+        again: how often a job is given to a new process if its process died, or was ended after
+            `limit_s`. Only for jobs that give the same result each time.
     """
 
     def __init__(
@@ -173,7 +173,7 @@ class Workers:
 
 
 class _WorkerProcess:
-    """A process, and the pipe to it."""
+    """A process that runs functions, and the pipe to it."""
 
     def __init__(self, background: bool) -> None:
         self._connection, other = _SPAWN.Pipe()
@@ -187,7 +187,7 @@ class _WorkerProcess:
     def call(
         self, function: Callable[..., Any], arguments: tuple[Any, ...], limit_s: float
     ) -> tuple[bool, Any]:
-        """Run a function in the process; return whether it worked, and its result or traceback.
+        """Run a function in the process; return whether it worked, and its result or its traceback.
 
         Raises:
             WorkerDied: if the process ended, took longer than `limit_s`, or gave no sign of life.
@@ -234,12 +234,12 @@ class _WorkerProcess:
 def _work(
     connection: "Connection[Any, Any]", background: bool, shown: time_limit.ShownBots
 ) -> None:
-    """Run the functions that come through the pipe until its other end is closed.
+    """Run the functions that arrive through the pipe, until its other end is closed.
 
     Args:
         connection: the pipe.
         background: whether this process gives way to others.
-        shown: shared memory, in which the parent process sees the running bot and each look at it.
+        shown: shared memory; the parent sees there which bot runs, and how often it was looked at.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:

@@ -117,7 +117,7 @@ def read(payload: bytes, kind: type[_Request]) -> _Request:
     """Decode a request.
 
     Raises:
-        BadMessage: if the bytes are not such a request, or too many.
+        BadMessage: if the bytes are not a request of this kind, or are too many.
         UserError: if the request uses another version of the protocol.
     """
     protocol = protocol_of(payload, STUDIO_MAX_BYTES)

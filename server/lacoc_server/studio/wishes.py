@@ -29,7 +29,7 @@ from lacoc_shared.words import say
 _MOST_S = 120.0
 """Longest search that a request may ask for [s]."""
 _MOST_KEPT, _MOST_BEFORE = 2, 60
-"""Most tables in a request as parents of variants, and most that it lists as shown before."""
+"""Most parents that a request for variants may have, and most tables that it may list as seen."""
 
 SearchRequest = CoachRequest | MapRequest | VariantsRequest
 REQUESTS: dict[str, type[SearchRequest]] = {

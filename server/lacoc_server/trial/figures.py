@@ -29,7 +29,7 @@ class Figures:
     speed_mm_s: float
     """Forward speed [mm/s], in the direction that the robot faced when the measurement began."""
     lateral_mm_s: float
-    """Speed to the left of this direction [mm/s]."""
+    """Speed to the left [mm/s], seen in the direction of `speed_mm_s`."""
     drift_deg_s: float
     """Turning speed to the left [deg/s]."""
     drift_deg_m: float | None

@@ -27,14 +27,14 @@ def try_key(course: Course, gait: Gait, digit: int) -> str:
         digit: the key.
 
     Returns:
-        What the key does, a name of `move.*`; "" if physics stopped.
+        What the key does, as a name of the texts `move.*`; "" if physics stopped.
     """
     walk = course.walk(gait, [Press(SETTLE_TICKS, Level.LOCOMOTION, digit)], _SECONDS)
     return move_of(measure(walk)) if walk.fault is None else ""
 
 
 def move_of(figures: Figures) -> str:
-    """Return the name (`move.*`) of the main motion of a walk, such as "forward" or "stand"."""
+    """Return the main motion of a walk, such as "forward" or "stand" (texts `move.*`)."""
     if figures.upright < _TIPPED:
         return "tip-over"
     forward, left, turn = figures.speed_mm_s, figures.lateral_mm_s, figures.drift_deg_s

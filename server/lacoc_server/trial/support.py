@@ -66,7 +66,7 @@ def margins_m(down: Bools, contact_w_m: Floats, centre_w_m: Floats) -> Floats:
 
 
 def _left(start: Point, end: Point, point: Point) -> float:
-    """Return twice the area of a triangle: positive if `point` is left of the way to `end`."""
+    """Return twice the area of a triangle: positive if `point` is left of the line to `end`."""
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 

@@ -15,7 +15,7 @@ SHOWN_NAMES = {
 
 
 def told(figures: Figures) -> tuple[tuple[Phrase, str], ...]:
-    """Return the name and the value with its unit of each figure."""
+    """Return, for each figure, its name and its value with the unit."""
     return (
         (say("trial.figure-speed"), _number(figures.speed_mm_s, "mm/s")),
         (say("trial.figure-lateral"), _number(figures.lateral_mm_s, "mm/s")),

@@ -32,18 +32,18 @@ class Span(NamedTuple):
 
     @property
     def ticks(self) -> int:
-        """Number of ticks."""
+        """Number of ticks of the measurement."""
         return self.end - self.first
 
     @property
     def seconds(self) -> float:
-        """Length [s]."""
+        """Length of the measurement [s]."""
         return self.ticks / BEATS_PER_S
 
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Sensed:
-    """The measurements of one tick: means over its steps where so noted, else of its last step."""
+    """The measurements of one tick: of its last physics step, where no mean over all is named."""
 
     load_n: Floats
     """(legs,) normal force between each shank and the floor, mean over the steps [N]."""

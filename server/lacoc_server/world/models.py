@@ -18,11 +18,11 @@ class Models(NamedTuple):
     """The models of one world. Bodies and joints are the same in all; ids of geoms are not."""
 
     whole: Any
-    """All geoms. Records name it by its hash, and pictures show it."""
+    """The model with all geoms. Records name it by its hash, and pictures show it."""
     stepped: Any
-    """Only the geoms that exert forces: MuJoCo steps it."""
+    """The model that MuJoCo steps, with only the geoms that exert forces."""
     touching: Any
-    """The geoms of `stepped` and the probes; None if there are no probes."""
+    """The model of `stepped` with the probes, which robots touch; None if there are no probes."""
 
 
 def compile_models(spec: mujoco.MjSpec) -> Models:

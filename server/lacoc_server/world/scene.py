@@ -1,4 +1,4 @@
-"""Makes the scene of a compiled model, which pages can draw without MuJoCo."""
+"""Makes the scene: a description of a compiled model that pages can draw without MuJoCo."""
 
 from collections.abc import Sequence
 from typing import Any

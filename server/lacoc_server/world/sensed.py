@@ -67,7 +67,7 @@ class SensedWorld(World):
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def sensed(self) -> Sensed:
-        """Return the measurements of the last tick; a copied world has no loads before a tick."""
+        """Return the measurements of the last tick; a world just copied has no loads yet."""
         data, legs = self.data, self._legs
         feet = self._sensors[:, : 6 * legs].reshape(self._steps, legs, 6)
         load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]

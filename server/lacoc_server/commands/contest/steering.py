@@ -1,4 +1,4 @@
-"""Commands for the day of a contest: from a terminal, the decisions of the office's page."""
+"""Commands for the day of a contest: what an organiser decides on the page /office."""
 
 from collections.abc import Callable, Sequence
 from datetime import datetime, time
@@ -203,18 +203,18 @@ def _steer(
     asks: bool = False,
     yes: bool = False,
 ) -> None:
-    """Append the facts of an organiser's act to the contest's facts, and print what was done.
+    """Append the facts that `act` returns to the contest's facts, and print what was done.
 
     Args:
         file: the contest file.
         by: who of the staff decides; "": the organiser.
         act: returns the new facts for a given state of the contest; what was done is printed from
             the last of them.
-        asks: whether to show what the act changes, and to ask before it is done.
+        asks: whether to show what the new facts change, and to ask before they are appended.
         yes: do not ask.
 
     Raises:
-        UserError: if the act can't be done.
+        UserError: if `act` refuses, or the facts can't be written.
     """
     from lacoc_server.contest.acts import deciding, steering
     from lacoc_server.contest.kept.folder import ContestFolder

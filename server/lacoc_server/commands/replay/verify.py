@@ -1,4 +1,4 @@
-"""`lacoc replay verify`: judge a record again, simulate its sections again, and compare."""
+"""`lacoc replay verify`: judge a recorded match again, simulate its physics, and compare."""
 
 from pathlib import Path
 from typing import Annotated, Any

@@ -36,7 +36,7 @@ _TABLE = "[contest]"
 _ALWAYS = ("localhost", "127.0.0.1", "::1")
 _NAME = "LACOC contest"
 _LIFE = timedelta(days=397)
-"""How long a certificate is valid: a season and some weeks."""
+"""How long a certificate is valid."""
 _AUTHORITY_LIFE = timedelta(days=3650)
 _CLOCKS_DIFFER = timedelta(days=1)
 _SOON = timedelta(days=14)
@@ -214,7 +214,7 @@ def doubts(
     """Yield warnings about a certificate: it ends soon, or it is for other host names.
 
     Args:
-        public: how others reach the pages; it has a certificate.
+        public: address of the pages and their certificate, which must be there.
         entries_close: when entries close, if the contest file says so. The contest is later, so the
             certificate must outlast this time.
         now: time with a time zone.

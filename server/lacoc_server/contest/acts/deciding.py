@@ -34,11 +34,11 @@ from lacoc_shared.words import Phrase, say
 
 Kind = Literal["replay", "result", "void", "no-show"]
 """replay: the game is played again. result: it counts with another result. void: the match counts
-for nobody. no-show: a team did not come, and its opponent wins if the match is open."""
+for nobody. no-show: a team did not come, and its opponent wins if the match is not decided yet."""
 
 
 class WantedDecision(NamedTuple):
-    """A decision as an organiser gives it."""
+    """A decision that an organiser wants to make."""
 
     kind: Kind
     pairing: str
@@ -52,11 +52,11 @@ class WantedDecision(NamedTuple):
 
 
 def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, ...]:
-    """Say what further facts would change: teams, matches, ranks, stages that end, the next draw.
+    """Say what would change if more facts were appended: teams, matches, ranks, the next draw.
 
     Args:
         facts: the facts of a contest, in their order.
-        more: further facts, which are not appended here.
+        more: the facts to try; they are not appended here.
     """
     last = facts[-1].number if facts else 0
     placed = [
@@ -105,7 +105,7 @@ def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
 
 
 def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[Phrase]:
-    """Say which games, not needed any more and not ended, would be taken back from courts."""
+    """Name the games that would be taken back from courts, because they are not needed any more."""
     stay = {call.id for call in needed(then)}
     for call in was.running:
         if call.id not in stay and call.pairing not in ended:
@@ -116,7 +116,7 @@ def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[P
 def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
     """Say which ranks would change.
 
-    Name the stages that follow and are drawn already: they keep their teams.
+    Also name the later stages that are drawn already: they keep their teams.
     """
     for stage, team, old, now in found.ranks:
         name = title(then, stage)
@@ -155,7 +155,7 @@ def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
 
 
 def seeds_moved(contest: Contest, draw: Drawn) -> Iterator[Phrase]:
-    """Say for each team of the next draw whose seed is not its rank why the seed differs."""
+    """Say why the seed of a team in the next draw differs from its rank, for each such team."""
     plan = contest.planned[0]
     how = FORMATS[plan.format]
     for team, why in moved_apart(contest, plan, how, draw.entries).items():
@@ -211,7 +211,7 @@ def _counts(contest: Contest, result: Played | Replaced) -> bool:
 
 
 def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
-    """Return the fact of a decision.
+    """Return the fact that records an organiser's decision.
 
     Raises:
         UserError: if there is no such match, game or team, or the reason or the points are missing.
@@ -255,7 +255,7 @@ def match_of(contest: Contest, pairing: str) -> ContestMatch:
 
 
 def _seats(match: ContestMatch, game: int) -> tuple[str, str]:
-    """Return the teams of a game: who sat left and right, or will sit so in the next game."""
+    """Return the left and the right team of a game that was played, or of the next one."""
     played = {one.number: one.teams for one in match.games}
     if game in played:
         return played[game]

@@ -1,4 +1,4 @@
-"""What an organiser does with a contest: enter teams, take them out, draw, play it offline."""
+"""What an organiser does with a contest: enter teams, take them out, draw, play without courts."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -49,7 +49,7 @@ def enter(
     club: str = "",
     by: str = "",
 ) -> Phrase:
-    """Enter a team, or change the files of a team that is in; say what was done.
+    """Enter a team, or change the files of a team that has entered; say what was done.
 
     Args:
         file: the contest file.
@@ -95,7 +95,7 @@ def enter_weighed(
     reason: str,
     club: str = "",
 ) -> Phrase:
-    """Enter a team with a weighed entry, or change the files of a team that is in.
+    """Enter a team with a weighed entry, or change the files of a team that has entered.
 
     Say what was done.
 
@@ -200,7 +200,7 @@ def draw(store: FactStore, shown: Drawn) -> Phrase:
     Args:
         store: the facts.
         shown: the draw as the organiser's page showed it, or the same teams in an order made by
-            hand. If a lot decides, it makes the order.
+            hand. If a lot decides, the order follows from the lot.
 
     Raises:
         UserError: if no draw waits or a different one does, or if the reason or the lot is missing;
@@ -263,7 +263,7 @@ def play_headless(
         file: the contest file.
         steer: the bot that steers teams without a bot.
         engine: plays the games; it is opened and closed here.
-        progress: told about each change.
+        progress: called with the numbers of decided and of all matches, after each change.
         tell: called for each team whose bot pressed keys that its gait does not have.
 
     Returns:
@@ -315,13 +315,13 @@ def publish_to(file: Path, folder: Path) -> None:
 def prepare(
     where: ContestFolder, store: FactStore, *, entering: bool = False, headless: bool = False
 ) -> None:
-    """Append the plans of the contest file, and check that a contest can be played.
+    """Append the stages of the contest file to the facts; check that the contest can be played.
 
     Args:
         where: the contest.
         store: its facts.
-        entering: whether teams may still come.
-        headless: whether there are no courts, which could play open matches.
+        entering: whether teams may still enter.
+        headless: whether there are no courts; a stage of open matches needs them.
 
     Raises:
         UserError: if the file has no stage, a stage that is drawn has changed there, or there are

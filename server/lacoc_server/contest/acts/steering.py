@@ -89,10 +89,10 @@ def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused
 
 
 def resuming(contest: Contest, now_ms: int) -> Resumed:
-    """Return the fact that ends a pause or a shift's wait.
+    """Return the fact that ends a pause, or the wait after a shift (a postponement).
 
     Raises:
-        UserError: if games are being called: nothing holds them back.
+        UserError: if neither a pause nor a shift keeps games from being called.
     """
     if not contest.day.is_held(now_ms):
         raise UserError(say("day.not-paused"))
@@ -127,7 +127,7 @@ def announcing(text: str) -> Announced:
 
 
 def substituting(contest: Contest, team: str, substitute: str, reason: str) -> Substituted:
-    """Return the fact that gives a team's place in stages where it has not played to a substitute.
+    """Return the fact by which a substitute takes a team's place where it has not played yet.
 
     Raises:
         UserError: if a team is not in the contest, the substitute has a place of its own in each
@@ -147,7 +147,7 @@ def substituting(contest: Contest, team: str, substitute: str, reason: str) -> S
 
 
 def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
-    """Return the stages in which a team could give up its place, each as the tuple of its teams.
+    """Return, for each stage in which a team could give up its place, the teams of the stage.
 
     These are the stages that are not over, and in which the team has a place but has played no
     game.
@@ -162,9 +162,9 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
 
 
 def undrawable(contest: Contest) -> str:
-    """Return the newest stage if its draw can be taken back: no game of it has a result.
+    """Return the name of the newest stage if its draw can be taken back; else "".
 
-    Else "".
+    It can if no game of the stage has a result.
     """
     newest = contest.stages[-1].name if contest.stages else ""
     return "" if newest in contest.stages_ended_ms else newest

@@ -41,7 +41,7 @@ class Admission:
         self._team_of = team_of
         self._guesses = Allowance(_GUESSES_HZ, _GUESSES_BURST)
         self.refused = 0
-        """Number of wrong secrets."""
+        """Number of wrong secrets that were shown so far."""
 
     def organiser(self, secret: str, now_s: float) -> str:
         """Check the secret of the organiser or of staff; return the staff's name, or "".

@@ -75,7 +75,7 @@ class Desk:
         self._known = known
         self._games = book.where.games
         self._one = threading.Lock()
-        """Lock that a thread holds while it uses the book, but not while it weighs files in."""
+        """Lock of the contest's data; a thread does not hold it while it weighs files in."""
         self._publishing = threading.Lock()
         """Lock that a thread holds while it writes the published folder."""
         self._scales = threading.Semaphore(_WEIGHED_AT_ONCE)

@@ -1,4 +1,4 @@
-"""Requests of a team: apply to take part, hand in other files, read how its entry stands."""
+"""Requests of a team: apply to take part, hand in other files, read the state of its entry."""
 
 from dataclasses import replace
 from typing import Literal
@@ -72,9 +72,9 @@ def apply(book: Book, team: str, entry: ContestEntry, contact: Contact) -> OwnEn
 def change(book: Book, team: str, entry: ContestEntry) -> OwnEntry:
     """Replace the files of a team by new ones that were weighed in.
 
-    While entries are open, a team that is in uses its new files at once. When entries are closed,
-    or if the team itself still waits, its files wait for the organiser. A team that sends no new
-    picture keeps its old one.
+    While entries are open, a team in the contest plays with its new files at once. When entries are
+    closed, or if the team itself is not approved yet, its files wait for the organiser. A team that
+    sends no new picture keeps its old one.
 
     Raises:
         UserError: if the team has left the contest, or the files can't be written.
@@ -110,7 +110,7 @@ def picture(book: Book, team: str) -> bytes | None:
 
 
 def own(book: Book, team: str) -> OwnEntry:
-    """Return how a team's own entry stands, for the team's page.
+    """Return the state of a team's entry, for the team's own page.
 
     Raises:
         UserError: if the facts can't be read, or a new token can't be written.

@@ -32,10 +32,10 @@ from lacoc_shared.words import Phrase, render, say
 
 
 def approve(book: Book, asked: Approve) -> Said:
-    """Approve teams: let new ones in, former ones come back, and others use their late files.
+    """Approve teams: they may enter, come back after leaving, or use files that they sent late.
 
     Raises:
-        UserError: if a team has neither applied nor been here before, if it can't come back, or if
+        UserError: if a team has neither applied nor taken part before, if it can't come back, or if
             a reason is missing. The teams before it in the list stay approved.
     """
     said: list[Phrase] = []
@@ -174,7 +174,7 @@ def steer(
     asked: Move | PauseContest | ResumeContest | Shift | Unshift | Announce,
     now_ms: int,
 ) -> Said:
-    """Steer the day, as in `acts.steering`, with the same errors; say what was done.
+    """Append a fact of `acts.steering`, with the same errors; say what was done.
 
     A request moves a match, pauses or resumes the contest, makes or undoes a shift, or shows a line
     to all.
@@ -245,7 +245,7 @@ def tokens(book: Book, by: str) -> TokenList:
 
 
 def _decided(book: Book, act: Callable[[Contest], Iterable[AnyFact]], really: bool) -> Effect:
-    """Say what an act of the organiser would change; append its facts if `really`.
+    """Say what new facts would change; append them if `really`.
 
     Args:
         book: the contest.

@@ -79,8 +79,8 @@ def view(book: Book, known: OfficeKnowledge, by: str) -> OfficeView:
 def _shift(contest: Contest, now_ms: int) -> ShiftState | None:
     """Return the newest shift, as long as games still wait because of it; else None.
 
-    A shift postpones everything by some minutes. Games wait for its end; a match that was moved to
-    a time waits for that time, which the shift has made later.
+    A shift postpones everything by some minutes. No game is called before they are over. A match
+    that was moved to a time waits for that time, which the shift has postponed too.
     """
     shift = contest.shifted
     if shift is None:

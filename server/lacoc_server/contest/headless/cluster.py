@@ -16,10 +16,10 @@ _CONNECT_S = 10
 _RETRIES = 3
 """How often Dask plays a game again after its worker was lost."""
 _LOOK_S = 5.0
-"""Time between two looks at the workers [s]."""
+"""Time between two checks whether there are workers [s]."""
 _MISSED_LOOKS = 2
-"""After so many looks in a row without a worker the user is told; a worker that restarts is back
-earlier."""
+"""Number of checks in a row without a worker after which the user is told. A worker that restarts
+is back earlier."""
 
 
 class Cluster:
@@ -86,7 +86,7 @@ class Cluster:
         return ours
 
     def _look(self) -> None:
-        """Tell when all workers are gone and when one is back.
+        """Tell the user when all workers are gone, and when there is one again.
 
         If the cluster is lost, end its games.
         """

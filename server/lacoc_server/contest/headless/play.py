@@ -35,8 +35,8 @@ from lacoc_shared.record.summary import Summary, summary
 from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
-"""Two teams can meet again in the same seats. For each earlier such game, their bots start this
-many ticks later."""
+"""Two teams can meet again in the same seats. For each earlier game of them in these seats, their
+bots start this many ticks later."""
 _MOST_DEATHS = 3
 """How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3
@@ -66,7 +66,7 @@ class _DueGame(NamedTuple):
 
     @property
     def teams(self) -> tuple[str, str]:
-        """Who sits left and right."""
+        """The left and the right team."""
         left, right = self.job.teams
         return left, right
 
@@ -168,15 +168,15 @@ def _still_due(
     known: Sequence[Played | Replaced],
     facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
-    """Yield those results in `known` whose games are still to be played by the newest facts.
+    """Yield those of the known results whose games, by the newest facts, have no result yet.
 
     Another program may just have appended another result of such a game, a fact after which the
     game is not played, or other files of a team.
 
     Args:
-        newest: computes the contest.
+        newest: computes the contest from facts.
         before: the facts by which the games were due.
-        known: the results.
+        known: results of games that were computed meanwhile.
         facts: the facts now.
     """
     was, now = _files(newest.of(before)), _files(newest.of(facts))

@@ -195,7 +195,7 @@ def play_all(
 def first_done(
     futures: "set[Future[PlayedAlone | Phrase]]",
 ) -> "tuple[set[Future[PlayedAlone | Phrase]], set[Future[PlayedAlone | Phrase]]]":
-    """Wait at most half a second for matches; return the futures that are done, then the others."""
+    """Wait at most half a second for matches; return the futures that are done, then all others."""
     # A wait without an end could not be interrupted on Windows.
     return wait(futures, _LOOK_S, FIRST_COMPLETED)
 

@@ -1,1 +1,1 @@
-"""What a contest keeps on the disk: its file, facts, frozen entries, tokens and sheet."""
+"""What a contest keeps on the disk: its file, facts, entries, tokens and sheet."""

@@ -85,7 +85,7 @@ class Applications:
         self._known[team] = Application(team, at_ms, entry)
 
     def drop(self, *teams: str) -> None:
-        """Remove the applications of teams; a team that has none is passed over.
+        """Remove the applications of teams; teams without one are ignored.
 
         Raises:
             UserError: if the database can't be written.

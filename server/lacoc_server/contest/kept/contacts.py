@@ -1,4 +1,4 @@
-"""The contacts and clubs of the teams, as each told when it applied.
+"""The contacts and clubs of the teams, as each team gave them when it applied.
 
 Only the organiser reads them.
 """
@@ -18,7 +18,7 @@ class Contact(msgspec.Struct, frozen=True, omit_defaults=True):
     reach: str = ""
     """An e-mail address or a telephone number, as the team wrote it."""
     club: str = ""
-    """Its school or club."""
+    """The team's school or club."""
 
 
 class Contacts:

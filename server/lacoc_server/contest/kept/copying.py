@@ -1,7 +1,7 @@
 """Copies of records that another machine writes, in the contest's own folder.
 
-A copy grows while the match is played. It is always the beginning of a record, as a killed court
-leaves one, so any court can go on from it.
+A copy grows while the match is played. It is always the beginning of a record, like the
+record of a killed court, so any court can go on from it.
 """
 
 import os
@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 
 
 class Taken(Enum):
-    """The result of a question to another machine for more of a record."""
+    """What another machine's answer added to the copy of a record."""
 
     MORE = "more"
     """The copy has grown."""
@@ -90,7 +90,7 @@ def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
     Args:
         match_id: the match.
         have: length in bytes of each file that is here, by its name.
-        part: what came.
+        part: what the other machine sent.
     """
     segment = files.segment_name(Path(part.file))
     is_segment = segment is not None and segment[0] == match_id

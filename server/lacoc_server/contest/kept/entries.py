@@ -75,7 +75,7 @@ class HandedIn:
     """The gait files as text, under the names that the team gave them."""
     bot: str = ""
     program: bytes | None = None
-    """As in `ContestEntry`."""
+    """Python source of the bot; None: the bot is installed."""
     picture: bytes | None = None
     wrong: FileRefused | None = None
     """The error with all mistakes in workbooks; None: there are no mistakes."""
@@ -258,7 +258,7 @@ def _is_installed(module: str) -> bool:
 
 
 class EntryFolder:
-    """The folder of all frozen entries; each has a folder of its own, named by its hash.
+    """The folder of all weighed-in entries; each has a folder of its own, named by its hash.
 
     Args:
         path: the folder; it is made when the first entry comes.

@@ -61,7 +61,7 @@ class _OpenTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 @dataclass(frozen=True)
 class OpenStage:
-    """A stage of open matches: courts that have no game play one after another."""
+    """A stage of friendly matches, which courts play while they have no game of another stage."""
 
     arena: str
     arena_settings: dict[str, Any]

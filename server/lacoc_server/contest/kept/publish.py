@@ -1,4 +1,4 @@
-"""A contest as a folder that anybody can read, serve as a website, and check."""
+"""Writes a contest as a folder that anybody can read, serve as a website, and check."""
 
 import shutil
 from collections.abc import Iterable, Sequence

@@ -60,7 +60,7 @@ class FactStore:
 
     @contextmanager
     def decided_by(self, name: str) -> Iterator[None]:
-        """In the block, note this member of staff in all facts that are appended."""
+        """In the block, note in all appended facts that this member of staff decided them."""
         before, self._by = self._by, name
         try:
             yield

@@ -22,7 +22,7 @@ def small_picture(file: SentFile) -> bytes:
     So the place where it was taken is lost, and so is anything hidden after the end of the picture.
 
     Args:
-        file: a PNG, JPEG, WebP or GIF file; of a moving picture the first one is taken.
+        file: a PNG, JPEG, WebP or GIF file; of an animation the first picture is used.
 
     Returns:
         A WebP file, `SIDE_PX` wide and high.

@@ -98,7 +98,7 @@ def _is_tied(table: Table, row: Standing, behind: Standing) -> bool:
 
 
 def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) -> Standing | None:
-    """Find the best team with the same place in another group that does not go on.
+    """Find the best team that has the same place in another group and does not go on.
 
     Return None if there is no such team.
     """
@@ -115,6 +115,6 @@ def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) 
 
 
 def _by(row: Standing, other: Standing) -> str:
-    """Return the code that puts a team before one with the same place in another group."""
+    """Return the code that ranks a team above the team with the same place in another group."""
     values = ((one.points, one.scored - one.conceded, one.scored) for one in (row, other))
     return next((code for code, a, b in zip(_ACROSS, *values, strict=True) if a != b), "seed")

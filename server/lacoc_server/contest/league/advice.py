@@ -12,7 +12,7 @@ _MOST = 20
 def advice(events: Iterable[Event]) -> tuple[Phrase, ...]:
     """Return the reasons of the court's newest advice to play the match again; empty: it gave none.
 
-    Only reasons of the health verdict count (`health.*`), with the values that belong to them.
+    Only reasons that a court can give count: texts `health.*`, with the values that they need.
     """
     reasons: object = ()
     for event in events:

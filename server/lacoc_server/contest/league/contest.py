@@ -106,7 +106,7 @@ class Unused(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Day(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether games are called."""
+    """Whether games are called now, or from when."""
 
     paused: bool
     """True: no game is called until somebody resumes the contest."""
@@ -121,7 +121,7 @@ class Day(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Contest(msgspec.Struct, frozen=True, kw_only=True):
-    """Everything that follows from the facts."""
+    """A contest as its facts make it: teams, stages, matches, tables and pauses."""
 
     teams: tuple[Team, ...]
     """The teams, in the order in which they entered."""
@@ -141,9 +141,9 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """The facts about what people decided, in their order."""
     day: Day
     shifted: Shifted | None
-    """The newest shift that was not taken back; None: there is none."""
+    """The newest shift (postponement) that was not taken back; None: there is none."""
     announced: Announced | None
-    """The line to all; None: there is none."""
+    """The organiser's announcement on all pages; None: there is none."""
     ended_ms: dict[str, tuple[str, int]]
     """By team: the pairing of its newest game, and when that ended."""
     stages_ended_ms: dict[str, int]

@@ -23,7 +23,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Decided(msgspec.Struct, frozen=True, kw_only=True):
-    """A decision of people."""
+    """A decision that people made in a contest, in words."""
 
     fact: str
     at_ms: int

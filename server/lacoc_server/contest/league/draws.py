@@ -36,7 +36,7 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     bot: str = ""
     """Name of the bot that plays for it; "": people play."""
     club: str = ""
-    """Its school or club; "": none."""
+    """The team's school or club; "": none."""
     picture: bool = False
     """Whether a picture of the team is among its files."""
     withdrawn: bool = False

@@ -14,7 +14,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
 VERSION = 1
-"""Version of the layout of facts."""
+"""Version of the format of facts."""
 
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
 Draw = Literal["at-once", "organiser"]
@@ -72,7 +72,7 @@ class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
 
 
 class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
-    """A team takes the place of another one in all stages in which that one has not played yet."""
+    """A substitute takes a team's place in all stages in which the team has not played yet."""
 
     team: Name
     """The team that gives its place up; it leaves the contest."""
@@ -81,7 +81,7 @@ class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
 
 
 class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
-    """A team may use other files although entries are closed."""
+    """The files with which a team plays are replaced by others."""
 
     team: Name
     files: str
@@ -103,7 +103,7 @@ class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=Tru
     places: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """How many first places must be decided before a sequential stage ends early."""
     confidence: Annotated[float, msgspec.Meta(ge=0.5, lt=1.0)] = 0.95
-    """Probability with which these places must be the right ones before the stage ends early."""
+    """Probability with which the first places must be right to end a sequential stage early."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
     """Number of groups of a round robin."""
     third_place: bool = False
@@ -124,7 +124,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     format: Name
     settings: StageSettings = StageSettings()
     after: str = ""
-    """The stage whose ranking is the seeding of this one; "": all who entered, in that order."""
+    """The stage whose ranking is the seeding of this one; "": all teams, in the order of entry."""
     title: dict[Literal["en", "ja"], Name] = {}
     """What people call it, by language; empty: the usual name of its format."""
     draw: Draw = "at-once"
@@ -132,13 +132,14 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """True: teams of one club do not meet in the first round, or in a group, if it can be avoided.
     """
     met_apart: bool = False
-    """True: teams that met in the stage before are kept apart in the same way."""
+    """True: teams that met in the stage before do not meet again in the first round, or in a group,
+    if it can be avoided."""
     break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
     """Shortest time between the end of the stages before it and its first game [s]."""
     final_court: str = ""
     """The only court for its final; "": any court."""
     final_break_s: Annotated[float, msgspec.Meta(ge=0)] = 0.0
-    """Shortest time between its last other game and its final [s]."""
+    """Shortest time between the end of all its other games and its final [s]."""
     teams: Annotated[int, msgspec.Meta(ge=0)] = 0
     """This many of the best teams take part; 0: all."""
     arena: str = ""
@@ -212,7 +213,7 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     record: str = ""
     """File name of the court's record."""
     record_hash: str = ""
-    """Hash of that file (`lacoc_server.contest.kept.folder.file_hash`)."""
+    """Hash of the record's file (`lacoc_server.contest.kept.folder.file_hash`)."""
     steer: str = ""
     """Name of the bot that steered teams without one, in a game without a network; "": no team
     needed it, or an older version wrote the fact."""
@@ -289,8 +290,8 @@ class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
 class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
     """Everything that has not happened yet is postponed by `by_ms`.
 
-    For this time no game is called. Earliest times of moved matches that are still to come are
-    later by it.
+    For this time no game is called. The earliest times of moved matches that are still to come are
+    postponed too.
     """
 
     by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]

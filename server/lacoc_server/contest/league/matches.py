@@ -1,4 +1,4 @@
-"""A match: a pairing with what the facts say of it: its teams, its games and its winner."""
+"""A match is a pairing with its teams, games and winner, as the facts give them."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Literal
@@ -34,7 +34,7 @@ How = Literal["", "played", "extra", "difference", "seed", "walkover", "bye", "v
 
 
 class CountedGame(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """A game that counts."""
+    """A game whose result counts for its match."""
 
     number: int
     teams: tuple[str, str]

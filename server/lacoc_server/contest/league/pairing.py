@@ -8,7 +8,7 @@ class Source(msgspec.Struct, frozen=True, tag_field="source", omit_defaults=True
 
 
 class Entrant(Source, frozen=True, tag="entry"):
-    """A team of the draw."""
+    """A team that the draw puts in this place."""
 
     team: str
 
@@ -38,7 +38,8 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     id: str
     """Names the pairing in the contest, such as "finals:w1.3"."""
     section: str
-    """Part of the stage: a group ("a"), "w", "l" or "f" of a knockout, "r" of a Swiss stage."""
+    """Part of the stage: a group ("a"); winners' bracket ("w"), losers' bracket ("l") or finals
+    ("f") of a knockout; "r" in a Swiss stage."""
     round: int
     """Round within its section, from 1."""
     sources: tuple[AnySource, AnySource]
@@ -52,5 +53,5 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     loser_goes_on: bool = False
     """True: the loser has another match. So teams leave the stage here only if nobody wins."""
     only_if_second_won: str = ""
-    """Id of another pairing: this one is played only if the second place wins that one. "":
-    always."""
+    """Id of another pairing: this one is played only if the team in the second place of that one
+    wins it. "": always."""

@@ -42,7 +42,7 @@ class Ratings(msgspec.Struct, frozen=True, kw_only=True):
     """Ratings of all teams that have played."""
 
     teams: tuple[Rating, ...]
-    """The strongest first."""
+    """A rating for each team, the strongest first."""
     side_elo: float
     """Advantage of the left seat, in Elo points."""
 

@@ -23,7 +23,7 @@ from lacoc_server.contest.league.titles import titles
 from lacoc_shared.words import Phrase
 
 VERSION = 8
-"""Version of the layout of a sheet."""
+"""Version of the format of a sheet."""
 EXPECTED_NOTHING: Mapping[str, tuple[str, int]] = {}
 _UNKNOWN = ("", 0)
 
@@ -54,7 +54,7 @@ class Later(msgspec.Struct, frozen=True, kw_only=True):
     2"."""
     court: str = ""
     at_ms: int = 0
-    """The probable court and time, as in `Coming`."""
+    """About when it will begin, in milliseconds since 1970, UTC; 0: not known."""
 
 
 class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
@@ -68,11 +68,11 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them, or
     not known, as in a published sheet."""
     teams: tuple[Team, ...]
-    """In the order in which they entered."""
+    """The teams, in the order in which they entered."""
     stages: tuple[StageView, ...]
     """The stages that were drawn, in the order of their draws."""
     titles: dict[str, Phrase]
-    """What each stage is called, by its name in the contest file; also of those not drawn yet."""
+    """What people call each stage, drawn or not, by its name in the contest file."""
     fixtures: dict[str, Phrase]
     """Name of each match, by its pairing: "Semi-final 1"."""
     planned: tuple[Planned, ...]
@@ -91,11 +91,11 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     pause: Break | None
     """The newest pause or break, which may be over; None: there was none."""
     announced: Announced | None
-    """The organiser's line to all; None: there is none."""
+    """The organiser's announcement on all pages; None: there is none."""
     decided: tuple[Decided, ...]
     """What people decided, the newest first."""
     ratings: tuple[Rating, ...]
-    """The strongest first; teams that have played no game are not among them."""
+    """A rating for each team that has played a game, the strongest first."""
     side_elo: float
     """Advantage of the left seat, in Elo points."""
     unused: tuple[Unused, ...]

@@ -32,17 +32,17 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True):
 
     team: str
     rank: int
-    """The team's rank, from 1. Tied teams share a rank, and the next ranks are left out; so do
-    teams that went out of a knockout in the same round."""
+    """The team's rank, from 1. Tied teams share a rank, and so do teams that went out of a knockout
+    in the same round. The next ranks are then left out."""
     won: int = 0
     drawn: int = 0
     lost: int = 0
     points: int = 0
-    """2 for a match won, 1 for a draw."""
+    """The team's points: 2 for a match won, 1 for a draw."""
     scored: int = 0
-    """Points in all its games."""
+    """Points that the team scored in all its games."""
     conceded: int = 0
-    """Points of its opponents in these games."""
+    """Points that the team's opponents scored in its games."""
     tie_breaks: tuple[int, ...] = ()
     """Values of the tie-breaks in the order of the table's codes."""
     decided_by: str = ""
@@ -62,7 +62,7 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     tie_breaks: tuple[str, ...]
     """Codes in the order in which they rank."""
     rows: tuple[Standing, ...]
-    """The best first."""
+    """A row for each team, the best first."""
 
 
 class _Tally:

@@ -28,8 +28,8 @@ from lacoc_shared.words import Phrase, say
 T = TypeVar("T")
 
 _GONE_S = 10.0
-"""If a court was not heard for this long, it goes on here [s]. Its own machine may restart it
-sooner."""
+"""If a court was not heard for this long [s], the office opens it on its own machine. The court's
+machine may restart it sooner."""
 _CONNECT_S = 0.2
 """Time between two attempts to connect [s]."""
 _AGAIN_S = 2.0
@@ -62,7 +62,7 @@ class Attempts(Generic[T]):
     Args:
         do: returns the result, or None if it has to be tried again.
         pause_s: time between the beginnings of two attempts [s].
-        aside: runs `do`.
+        aside: runs `do` on another thread.
     """
 
     def __init__(self, do: Callable[[], T | None], pause_s: float, aside: Executor) -> None:

@@ -55,7 +55,7 @@ class Asked(Generic[T]):
 
     Args:
         question: the request.
-        kind: the kind of message that the court answers.
+        kind: the kind of message with which the court answers.
         refused: called if the court refuses the request, with the refusal.
     """
 

@@ -46,7 +46,7 @@ class Office:
 
     Args:
         store: the facts.
-        entries: the frozen files of the teams.
+        entries: the files of the teams, as they were weighed in.
         token_of: returns a team's token.
         links: the courts by name, in the order in which they are filled; None: a court that is not
             connected yet.
@@ -84,7 +84,7 @@ class Office:
         self._draw_from_ms = draw_from_ms
         self._heard_ms = dict.fromkeys(links, 0)
         self._since_ms = _now_ms()
-        """When this office began to listen; silence of a court before that costs it no game."""
+        """When this office began to listen; a court that was silent before keeps its game."""
         self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
         self._asked_ms: dict[str, int] = {}

@@ -22,7 +22,7 @@ _OVER = (Phase.OFFICIAL, Phase.VOID)
 
 
 class OpenMatches:
-    """Assigns open matches to courts; never waits for one.
+    """Assigns open matches to courts; never waits for an answer.
 
     Args:
         stage: the stage of open matches.

@@ -45,10 +45,10 @@ _STEP_S = 0.05
 _FAREWELL_S = 5.0
 """After the end the courts stay open for this long, so that all teams hear of it [s]."""
 _LATE_S = 30.0
-"""With several courts at real time, they stay open for this long [s] in place of `_FAREWELL_S`:
+"""Several courts at real time stay open for this long after the end [s], not for `_FAREWELL_S`:
 pages that follow the director show the end 20 s later, and then the result."""
 _COPY_S = 60.0
-"""Once that time is over, longest wait for the newest records of courts on other machines [s]."""
+"""Longest wait for records of courts on other machines, after `_FAREWELL_S` or `_LATE_S` [s]."""
 _SHOWN_S = 60.0
 """A court on another machine shows the last match for this long [s]. Then the court closes it, so
 that its record can be copied whole."""
@@ -257,7 +257,7 @@ def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) 
 
 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
-    """Return whether the office may end, `passed_s` after the courts' farewell.
+    """Return whether the office may end, `passed_s` after its courts need not stay open any more.
 
     It may if all records of courts on other machines are here, or have not come for `_COPY_S`.
     """

@@ -26,10 +26,10 @@ from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import say
 
 _LOOK_MS = 1000
-"""Time between two estimates if nothing else has changed [ms]."""
+"""Time between two estimates of when matches begin, if nothing else has changed [ms]."""
 _AGAIN_MS = 3000
-"""A court is told again after this time even without a change, because it may have restarted
-[ms]."""
+"""After this time a court is told again where the teams are, even without a change: it may have
+restarted [ms]."""
 _BETWEEN_MS = 60_000
 """Guess for the time from the call of a game to the start of play, until a game has ended [ms]."""
 _SALT_BYTES = 16
@@ -65,7 +65,7 @@ class Teller:
         self._open_matches = open_matches
         self._applicants = applicants
         self.pace = ContestPace(0, 0, least_rest_ms)
-        """How fast the contest goes, as of the newest estimate."""
+        """How long games take, as of the newest estimate."""
         self.expected: dict[str, tuple[str, int]] = {}
         """By pairing: where and when the next matches will probably begin, by the newest estimate.
         Times are full minutes, so that they seldom change."""
@@ -73,8 +73,8 @@ class Teller:
         self._contest: Contest | None = None
         self._calls: tuple[str, ...] = ()
         self._waiting: tuple[str, ...] = ()
-        """These three are as of the newest estimate: the contest, the courts' calls, and the teams
-        that waited for the organiser."""
+        """`_contest`, `_calls` and `_waiting`: the contest, the courts' calls and the waiting
+        teams, as of the newest estimate."""
         self._looked_ms = 0
         self._first_ms = 0
         self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}

@@ -44,7 +44,7 @@ def court(
         name: the court's name.
         folder: folder for what the process prints; it is made.
         speed: 2 plays twice as fast as real time.
-        tell: told why the court can't be opened yet, at the first try.
+        tell: called with the reason if the court can't be opened at the first try.
         here: True: the court runs on the office's machine. False: it runs on the machine that the
             contest file names for it, if any.
 

@@ -1,4 +1,4 @@
-"""Answers the second machine, which may read all that the office keeps; messages are sealed."""
+"""Answers the second machine, which may read all that the office keeps; messages are encrypted."""
 
 import hashlib
 import threading
@@ -37,7 +37,7 @@ from lacoc_shared.words import Phrase, say
 _FACTS_BYTES = 1 << 18
 """Most characters that the facts in one answer may have together."""
 ASK_MAX_BYTES = 65_536
-"""Longest sealed request that is read [bytes]."""
+"""Longest encrypted request that is read [bytes]."""
 _SILENT_S = 10.0
 """The organiser is told if the second machine has not asked for this long [s]."""
 
@@ -76,7 +76,7 @@ class StandbyDoor:
         self._store.__exit__()
 
     def judge(self, payload: bytes) -> bytes | Refusal:
-        """Answer a sealed request; refuse one that was not sealed with the token."""
+        """Answer an encrypted request; refuse it if it was not encrypted with the token's key."""
         if len(payload) > ASK_MAX_BYTES:
             return Refusal(say("standby.not-proven"))
         try:
@@ -87,7 +87,7 @@ class StandbyDoor:
         return self._sealing.seal(encode(self.answer(request)), payload)
 
     def answer(self, asked: AnyAsk) -> AnyAnswer:
-        """Answer a request that was opened with the right token."""
+        """Answer a request that was decrypted with the right token's key."""
         try:
             self._tenure.hear(asked.generation)
             with self._one:

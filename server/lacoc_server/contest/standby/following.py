@@ -1,9 +1,9 @@
 """Keeps a copy of an office's folder equal to the original.
 
 A step asks what the office has, and copies what is missing: first entries, secrets and records,
-which facts can name, then the facts themselves. The facts of a step were read before its records.
-So if copying stops at any moment, the copy has the record of each of its results, at least up to
-the end of the match.
+because facts can name them, then the facts themselves. The facts of a step were read before its
+records. So if copying stops at any moment, the copy has the record of each of its results, at least
+up to the end of the match.
 """
 
 import os
@@ -67,7 +67,7 @@ class Follower:
 
     Args:
         where: the contest in this machine's folder.
-        other: the office.
+        other: asks the office whose folder is copied.
         tell: called with problems that the organiser must know.
 
     Raises:

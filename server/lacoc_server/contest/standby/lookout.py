@@ -1,4 +1,4 @@
-"""Asks all known machines for a later office, and so tells earlier offices of this one."""
+"""Looks for a later office on all known machines, and tells earlier ones of this office."""
 
 import threading
 from contextlib import ExitStack

@@ -22,7 +22,7 @@ that the office's machine runs in place of theirs."""
 class StandbyAsk(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"
 ):
-    """Fields of all requests."""
+    """The fields of all requests between the two machines of an office."""
 
     generation: Annotated[int, msgspec.Meta(ge=0)]
     """How often the office has gone to another machine, as far as the sender can tell. An office
@@ -40,13 +40,13 @@ class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
     """Asks what the office has that the second machine lacks. The answer is `There`."""
 
     address: str
-    """Address at which the office could be asked if it went on at the second machine."""
+    """Address of the office if it went on at the second machine."""
     facts: Annotated[int, msgspec.Meta(ge=0)]
     """How many facts the second machine has."""
     last: str
-    """Hash of its last fact as it is stored; "": it has none."""
+    """Hash of the second machine's last fact, as it is stored; "": it has none."""
     applications: str
-    """Version of its list of applications."""
+    """Version of the second machine's list of applications."""
 
 
 class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
@@ -88,7 +88,7 @@ class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="
     files: dict[str, str]
     """Hashes of the small files by name; files that do not exist are left out."""
     applications: str
-    """Version of the list of applications."""
+    """Version of the office's list of applications."""
     waiting: dict[str, int] | None
     """The time at which each waiting team sent its files [ms since 1970, UTC]; None: the second
     machine has this version of the list already."""

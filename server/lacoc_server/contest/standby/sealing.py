@@ -14,15 +14,15 @@ _NONCE_BYTES = 12
 
 
 class BadSeal(Exception):
-    """The bytes can't be opened: the key or the purpose is another one, or they were changed."""
+    """The bytes can't be decrypted: the key or the purpose is another one, or they were changed."""
 
 
 class Sealing:
     """Encrypts and authenticates messages with a key that is made from a token.
 
     Args:
-        token: the token. A short word that a person chose can be guessed with time: the key is
-            made slowly (scrypt).
+        token: the token. Even a short word that a person chose is slow to guess: the key is made
+            with scrypt.
     """
 
     def __init__(self, token: str) -> None:
@@ -47,7 +47,7 @@ class Sealing:
             purpose: what the message must be for.
 
         Raises:
-            BadSeal: if it was not sealed with this key for this purpose.
+            BadSeal: if it was not encrypted with this key for this purpose.
         """
         nonce, hidden = sealed[:_NONCE_BYTES], sealed[_NONCE_BYTES:]
         try:
@@ -57,5 +57,5 @@ class Sealing:
 
 
 REQUEST = b"request"
-"""Purpose of each request. The purpose of its answer is the sealed request itself, so that an
+"""Purpose of each request. The purpose of its answer is the encrypted request itself, so that an
 answer to an earlier request can't be sent again."""

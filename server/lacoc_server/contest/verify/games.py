@@ -1,4 +1,4 @@
-"""Checks a game of a published contest: compares its result with its record, which it proves."""
+"""Checks a game of a published contest: compares result and record, and proves the record."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -293,7 +293,7 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
 
 
 def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:
-    """Return whether a record is from the court of the call; without a call, from no court."""
+    """Return whether a record is from the court that had the game; or from none, if none had it."""
     if game.call is not None:
         return setup.court == game.call.court
     wanted = setup_of(setup.match_id, arena, setup.limits)

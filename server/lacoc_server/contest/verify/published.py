@@ -83,7 +83,7 @@ def other_sheet(folder: Path) -> Phrase | None:
 
 
 def _version(folder: Path) -> int:
-    """Return the version of the sheet's layout, or ours if the sheet can't be read.
+    """Return the version of the sheet's format; this software's version if it can't be read.
 
     A sheet that can't be read is reported later.
     """

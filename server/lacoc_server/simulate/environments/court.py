@@ -29,9 +29,9 @@ Actions = Literal["keys", "angles"]
 Angles = npt.NDArray[np.float64]
 
 _FAR_M = 20.0
-"""Bound of positions in the spaces [m]; the fields of LACOC are smaller."""
+"""Bound of positions in the observation spaces [m]; the fields of LACOC are smaller."""
 _MOST = 1e4
-"""Bound of points in the spaces."""
+"""Bound of points in the observation spaces."""
 
 
 class AgentCourt:
@@ -86,7 +86,7 @@ class AgentCourt:
             (*entry.gait.keys(Level.LOCOMOTION), *((RESTART_KEY,) if restart else ()))
             for entry in self.entries
         )
-        """For each seat the digit of each action."""
+        """For each seat, the digit of the key that each action presses."""
 
     @staticmethod
     def _check(arena: Arena) -> None:
@@ -115,14 +115,14 @@ class AgentCourt:
         return with_options(draw(self.arena, chance), options, self.arena)
 
     def action_space(self, seat: int) -> "spaces.Space[Any]":
-        """Return the actions of a seat."""
+        """Return the action space of a seat."""
         if self.actions == "keys":
             return spaces.Discrete(len(self.digits[seat]))
         joints = self.entries[seat].robot.joints
         return spaces.Box(-1.0, 1.0, (joints,), np.float32)
 
     def observation_space(self, senses: Senses, seat: int) -> spaces.Box:
-        """Return the bounds of what a seat sees; see `Senses` for the order."""
+        """Return the observation space of a seat; `Senses` has the order of the numbers."""
         game, order = self.arena.game, [seat, *(s for s in range(len(self.seats)) if s != seat)]
         body = {"x_m": _FAR_M, "y_m": _FAR_M, "z_m": _FAR_M}
         duration_s = self.arena.match.duration_s
@@ -141,7 +141,7 @@ class AgentCourt:
 
     @cached_property
     def _ranges_rad(self) -> list[tuple[Angles, Angles]]:
-        """For each seat the middle and half the width of each joint's range [rad]."""
+        """For each seat, the middle of each joint's range and half its width [rad]."""
         found = []
         for entry in self.entries:
             limits = np.radians(np.array(entry.robot.ranges_deg))
@@ -149,7 +149,7 @@ class AgentCourt:
         return found
 
     def digit(self, seat: int, action: Any) -> int:
-        """Return the digit of an action.
+        """Return the digit of the key that an action presses.
 
         Raises:
             UserError: if there is no such action.
@@ -164,7 +164,7 @@ class AgentCourt:
         return digits[number]
 
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
-        """Return the key that an action presses; if actions are angles, steer and return None.
+        """Return the key that an action presses; for angles, steer the robot and return None.
 
         Raises:
             UserError: if the action space does not have the action.
@@ -182,7 +182,7 @@ def shares(action: Any, shape: tuple[int, ...]) -> Angles:
 
     Args:
         action: the action that was given.
-        shape: (joints,), or of a table (postures, joints).
+        shape: (joints,) for angles; (postures, joints) for a table.
 
     Raises:
         UserError: if the action has another shape, or a number in it is not finite.
@@ -220,7 +220,11 @@ def _plain(value: Any) -> Any:
 
 
 def _names(robots: Any, arena: Arena) -> list[str]:
-    """Return the robot of each seat."""
+    """Return the name of each seat's robot.
+
+    Raises:
+        UserError: if there is not one name for each seat.
+    """
     seats = len(arena.seats)
     names = [robots] * seats if isinstance(robots, str) else robots
     fits = isinstance(names, list | tuple) and len(names) == seats

@@ -1,4 +1,4 @@
-"""How an episode begins. A match has no randomness: all that a seed chooses is here."""
+"""How an episode begins: all that a seed chooses. A match itself has no randomness."""
 
 from collections.abc import Sequence
 from difflib import get_close_matches
@@ -15,12 +15,12 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import say
 
 _NEAR = 0.75
-"""Least similarity (`difflib`) of a misspelt name to the option that was meant. That of "late_tick"
-to "late_ticks" is 0.95; that of "state", another word, to "seat" is 0.67."""
+"""Similarity (`difflib`) from which an unknown name counts as a misspelt option. "late_tick" is
+similar to "late_ticks" by 0.95; "state", which is another word, to "seat" by 0.67."""
 OPTIONS = ("place", "late_ticks", "seat", "reset_mask")
 """Names of the options of all environments of a game."""
 MOST_LATE_TICKS = 25
-"""Largest number of ticks by which a seed lets a seat begin later."""
+"""Largest number of ticks by which a seed delays a seat's first key."""
 _PLACES = ("start_cells", "starts")
 """Entries of [game] that list the start places of the left team, in the arenas of LACOC."""
 
@@ -31,7 +31,7 @@ class Opening(msgspec.Struct, frozen=True):
     place: int = 0
     """Index of the start place in the arena file's list; the right robot begins opposite to it."""
     late_ticks: tuple[int, ...] = ()
-    """For each seat the ticks of play before its first key counts."""
+    """For each seat, the number of ticks of play that pass before its keys count."""
     seat: int = 0
     """The seat of the learner, in an environment with a bot."""
 
@@ -78,10 +78,10 @@ def known_options(options: Any, known: Sequence[str]) -> dict[str, Any]:
 
 
 def with_options(drawn: Opening, options: dict[str, Any], arena: Arena) -> Opening:
-    """Put entries of options in place of what was drawn.
+    """Return the drawn opening, with the values that the options give in place of its own.
 
     Raises:
-        UserError: if one of them does not fit; it says what is allowed.
+        UserError: if a value of the options does not fit; the message says what is allowed.
     """
     seats = [seat.id for seat in arena.seats]
     place, late, seat = drawn.place, drawn.late_ticks, drawn.seat
@@ -115,13 +115,13 @@ def _late_ticks(given: Any, seats: int, duration_s: float) -> tuple[int, ...]:
 
 
 def start_place_count(arena: Arena) -> int:
-    """Return how many start places an opening can choose from: 1 in a game that lists none."""
+    """Return how many start places an opening can choose from; 1 if the game lists none."""
     found = _listed(arena.settings)
     return len(found[1]) if found else 1
 
 
 def begun_at(arena: Arena, place: int) -> Arena:
-    """Return the arena with the start place of this index as its first one."""
+    """Return the arena with the start place of this index moved to the front of its list."""
     found = _listed(arena.settings)
     if place == 0 or found is None:
         return arena

@@ -1,4 +1,4 @@
-"""Pictures of an environment, for `render`."""
+"""Draws the pictures that an environment's `render` returns."""
 
 from typing import Any
 

@@ -20,8 +20,9 @@ from lacoc_shared.words import say
 class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
     """A match of two seats; both see, act and are rewarded at the same time.
 
-    The reward of a step is by how many points the agent's lead grew in it. So the rewards of an
-    episode add up to the final lead minus the first one, and those of both agents to zero.
+    The reward of a step is the growth of the agent's lead in it [points]. So an agent's rewards in
+    an episode add up to its final lead minus its first lead. In each step the rewards of both
+    agents add up to zero.
 
     Args:
         arena: name or folder of the arena.
@@ -97,7 +98,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
             options: "place" and "late_ticks" replace what the seed would choose.
 
         Returns:
-            What each agent sees, and for each agent the opening.
+            What each agent sees, and the opening as each agent's info.
 
         Raises:
             UserError: if the seed is not a whole number, or an option does not fit.
@@ -129,7 +130,8 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
         Returns:
             What each agent sees; rewards; whether the match is over; whether physics stopped; and
-            at the end, for each agent, the scores and whether it won. All are empty after the end.
+            at the end, for each agent, the scores and whether it won. After the end all these are
+            empty.
 
         Raises:
             UserError: if no episode has begun, if there is no such agent, or the action space does

@@ -34,8 +34,8 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         actions: "keys"; a bot presses keys, so angles are for `LacocParallelEnv` and `WalkEnv`.
         restart: whether [x] is one more action.
         beats: beats of 20 ms in a step.
-        court: the game, if several environments share one; `arena`, `settings`, `robots`, `restart`
-            and `beats` are then not used.
+        court: game and robots, if several environments share them; `arena`, `settings`, `robots`,
+            `restart` and `beats` are then not used.
 
     Raises:
         UserError: if one of these is wrong.
@@ -47,7 +47,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
     }
 
     OPTIONS = ("place", "late_ticks", "seat")
-    """Options of `reset`."""
+    """Names of the options of `reset`."""
 
     def __init__(
         self,
@@ -209,7 +209,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Check that an episode has begun, and that the action space has an action.
 
         Raises:
-            UserError: if not.
+            UserError: if no episode has begun, or there is no such action.
         """
         self.episode.require_begun()
         self.court.digit(0, action)

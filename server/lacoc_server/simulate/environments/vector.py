@@ -1,4 +1,4 @@
-"""Many environments of one agent at once, on all cores."""
+"""Steps many environments of one agent each at the same time, on all cores."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -57,7 +57,7 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
     A row whose episode is over begins the next one in the next step (`AutoresetMode.NEXT_STEP`).
 
     In a step each thread takes the next row that no thread has taken yet. MuJoCo lets the other
-    threads run while it computes, so only what Python does takes turns.
+    threads run while it computes. Only one thread at a time runs Python.
 
     Args:
         rows: the environments.
@@ -140,7 +140,7 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
 
         Returns:
             What the learners see, rewards, whether each match is over, whether physics stopped, and
-            what a single environment tells of each row.
+            the infos of all rows, in the form of Gymnasium's vector environments.
 
         Raises:
             UserError: if no episode has begun, or there is not an action for each row; then no row

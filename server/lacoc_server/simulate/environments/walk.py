@@ -30,15 +30,15 @@ from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import say
 
 _FORWARD = 2
-"""The key that a table is tried with, as in the sample gaits."""
+"""The key with which a table is tried; it walks forward in the sample gaits."""
 _MOST_TURN_RAD = math.radians(15)
-"""A seed turns each joint of the first posture by at most this much."""
+"""Largest angle by which a seed turns each joint of the first posture."""
 _SECONDS = 20.0
-"""Usual length of an episode [s]."""
+"""Default length of an episode [s]."""
 _POSTURES = 4
-"""Usual number of postures of a table, as in the sample gaits."""
+"""Default number of postures of a table, as in the sample gaits."""
 _FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 20.0, 0.5, 1.0
-"""Usual weights of the reward: the sample gait walks 0.06 m/s."""
+"""Default weights in the reward, chosen for the sample gait's speed of 0.06 m/s."""
 _HEALTHY_UP = 0.5
 """A robot is falling if its `_up` is less than this: its body is tilted by 60 degrees or more."""
 _UNUSED: dict[str, dict[str, Any]] = {
@@ -52,10 +52,10 @@ _UNUSED: dict[str, dict[str, Any]] = {
         "terminate_when_unhealthy": True,
     },
 }
-"""For each kind of actions, arguments that have no effect, with their defaults."""
+"""For each kind of actions, the arguments that have no effect with it, and their defaults."""
 _NUMBERS = (int, float, np.integer, np.floating)
 _FIGURES = ("speed_m_s", "lateral_m_s", "drift_rad_s", "upright", "slip_m_s", "belly_share")
-"""Figures that are the observation after a table was tried."""
+"""Figures of a trial that are the observation after a table was tried."""
 _BODY = {
     "ahead_m": 20.0,
     "left_m": 20.0,
@@ -87,17 +87,17 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
     joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move
-    there at the robot's own speed (AngMin). An episode ends when the robot falls, which is when its
-    body is tilted by more than 60 degrees, and is cut after `seconds`.
+    there at the robot's own speed (AngMin). An episode ends when the robot falls: its body is
+    tilted by more than 60 degrees. After `seconds` it is cut.
 
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
     "reward_forward" is the mean speed of the step [m/s] in the direction in which the robot stood,
     times a weight; "reward_survive" is paid for each step in which the robot is not falling;
     "reward_ctrl" is the mean square of how far the action asks the joints to move, in halves of
-    their ranges, times a negative weight. `names` says what is seen: of the body how far its middle
-    is ahead and to the left of its start, its height, the parts of its forward direction ahead and
-    to the left, how upright it is (1 upright, -1 on its back), and its velocity; then joint angles
-    and commanded angles.
+    their ranges, times a negative weight. `names` lists what is seen. Of the body it is how far
+    its middle is ahead and to the left of its start, its height, the parts of its forward direction
+    ahead and to the left, how upright it is (1 upright, -1 on its back), and its velocity. Then
+    come joint angles and commanded angles.
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
@@ -112,9 +112,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         beats: with angles, beats of 20 ms in a step.
         postures: number of postures of a table.
         render_mode: "rgb_array", or None.
-        forward_reward_weight: with angles, as explained above; so are the next two.
-        ctrl_cost_weight: weight of how far joints are asked to move.
-        healthy_reward: reward of a step in which the robot is not falling.
+        forward_reward_weight: with angles, weight of the speed in the reward.
+        ctrl_cost_weight: with angles, weight of how far joints are asked to move.
+        healthy_reward: with angles, reward of a step in which the robot is not falling.
         terminate_when_unhealthy: with angles, whether an episode ends when the robot falls.
 
     Raises:
@@ -127,7 +127,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     }
 
     OPTIONS = ()
-    """Options of `reset`: none."""
+    """Names of the options of `reset`: there are none."""
 
     def __init__(
         self,
@@ -230,7 +230,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return self.observe(), {}
 
     def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
-        """Let the beats of a step pass, or try a table; see the class.
+        """Let the beats of a step pass, or try a table of key 2.
 
         Returns:
             What is seen; the reward; whether the robot falls (with a table always True); whether
@@ -337,7 +337,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """Check that an episode has begun, and that the action space has an action.
 
         Raises:
-            UserError: if not.
+            UserError: if no episode has begun, or the action does not fit.
         """
         self._require_begun()
         shares(action, self._shape)
@@ -359,7 +359,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return True
 
     def _way(self, vector: Any) -> tuple[float, float]:
-        """Split a vector into its parts ahead and to the left, by the robot's first heading."""
+        """Return the parts of a world vector ahead and to the left of the robot's first heading."""
         _, _, _, qw, qx, qy, qz = self._from[:7].tolist()
         x, y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
         length = math.hypot(x, y)
@@ -402,7 +402,7 @@ def _weight(name: str, given: Any) -> float:
     """Return a weight of the reward.
 
     Raises:
-        UserError: if it is not a number, or it is negative.
+        UserError: if the weight is not a number, or is negative.
     """
     if not isinstance(given, _NUMBERS) or not 0 <= given < math.inf:
         raise UserError(say("environment.weight", name=name, found=short(given)))

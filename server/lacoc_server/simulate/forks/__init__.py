@@ -1,1 +1,1 @@
-"""Forks of a record: its match goes on from one of its beats, as it was or with a change."""
+"""Forks: a recorded match goes on from one of its beats, unchanged or with a change."""

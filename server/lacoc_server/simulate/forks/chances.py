@@ -1,7 +1,7 @@
 """The odds of a record: computed from forks in other processes, and kept beside the record.
 
-Each moment has a hash of everything that decides how its forks go: the match until then, the bots
-and the software. So forks that are kept are not played again, even if more forks are wanted.
+Each moment has a hash of everything that decides how its forks end: the match until then, the
+bots and the software. So kept forks are not played again, even if more forks are wanted.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ from lacoc_shared.seat import BEAT_S, BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase, say
 
 FORMAT = 1
-"""Version of the layout of a file of odds."""
+"""Version of the format of a file of odds."""
 
 
 class Odds(msgspec.Struct, frozen=True, kw_only=True):
@@ -45,11 +45,12 @@ class Odds(msgspec.Struct, frozen=True, kw_only=True):
     bots: tuple[str, str]
     """The bots that play the forks, by seat."""
     moments: tuple[MomentOdds, ...]
-    """In order. If the match has a result, the last moment is its end, with chance 1, 0.5 or 0."""
+    """Moments in order of time. If the match has a result, the last one is its end, with chance 1,
+    0.5 or 0."""
 
 
 class ChanceJob(msgspec.Struct, frozen=True, kw_only=True):
-    """The forks of one moment, which a process plays."""
+    """A job for a process: to play forks of one moment."""
 
     file: str
     beat: int
@@ -65,7 +66,7 @@ class ForkEngine(Protocol):
     def submit(
         self, function: Callable[[ChanceJob], tuple[float, ...] | Phrase], job: ChanceJob, /
     ) -> "Future[tuple[float, ...] | Phrase]":
-        """Call the function with a job when a process is free."""
+        """Call the function with a job when a process is free; return a future of its result."""
 
 
 class Wish(msgspec.Struct, frozen=True, kw_only=True):
@@ -88,11 +89,11 @@ def compute_odds(
     Args:
         wish: the record, and how its odds are to be computed.
         engine: plays the forks.
-        known: odds that were kept; their forks are reused where they would go the same way.
-        progress: told how many moments are done, and how many there will be at most.
+        known: odds computed earlier; forks of them that would end the same way again are reused.
+        progress: called with the number of moments done, and the number that there will be at most.
 
     Yields:
-        The odds so far, each time some more are known; at last all of them.
+        The odds so far, after each moment that is done; the last ones are complete.
 
     Raises:
         UserError: if the record can't be forked, does not have two seats, or has no play, or if a
@@ -145,20 +146,20 @@ class MatchCourse:
         frames = [decode(encoded, Frame) for _, encoded in record.frames]
         clocks = {one.beat: one.clock_ticks for one in frames if one.phase == Phase.PLAYING}
         self.clocks = clocks
-        """Ticks of the clock by beat of play."""
+        """Ticks of the match's clock, by beat of play."""
         self.playing = sorted(clocks)
         if not self.playing:
             raise UserError(say("odds.no-play", match=source.match_id))
         self.end = _end(record.result, source, self.playing[-1] + 1)
-        """The end of the match; None: it has no result."""
+        """The odds at the end of the match, which are certain; None: it has no result."""
 
     def clock_s(self, beat: int) -> float:
-        """Return the clock's time at a beat of play [s]; for other beats, at the end of play."""
+        """Return the clock at a beat of play [s]; for other beats, the clock at the end of play."""
         return self.clocks.get(beat, self.clocks[self.playing[-1]]) * BEAT_S
 
 
 def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
-    """Play the forks of one moment, one after the other; return their margins.
+    """Play the forks of one moment; return by how many points the first seat won each.
 
     If a user can correct the cause of an error, return the error's phrase instead.
     """
@@ -169,7 +170,7 @@ def margins(job: ChanceJob) -> tuple[float, ...] | Phrase:
 
 
 def key(source: ForkSource, beat: int, bots: tuple[str, str], arena: str | None = None) -> str:
-    """Return the hash of everything that decides how the forks of a moment go.
+    """Return the hash of everything that decides how the forks of a moment end.
 
     Args:
         source: the record.
@@ -188,7 +189,7 @@ def key(source: ForkSource, beat: int, bots: tuple[str, str], arena: str | None 
 
 
 def margin(result: Result, seats: Sequence[str]) -> float:
-    """Return by how many points the first seat won; negative: it lost.
+    """Return by how many points the first seat won a match; negative: it lost.
 
     If a seat won by a rule other than points, its margin is at least one point.
     """
@@ -221,7 +222,7 @@ def _margins(job: ChanceJob) -> Iterator[float]:
 
 @lru_cache(maxsize=1)
 def _match_at(file: str, beat: int, arena: str | None) -> tuple[Match, bytes]:
-    """Return a recorded match as it was before a beat, and its save.
+    """Return a recorded match as it was before a beat, and a save of it.
 
     Each fork changes this match, so load the save into it before each fork.
     """
@@ -240,7 +241,7 @@ def _two_seats(source: ForkSource) -> tuple[str, str]:
 
 
 def _still_known(source: ForkSource, wish: Wish, known: Odds | None) -> dict[int, MomentOdds]:
-    """Return the moments whose forks would go the same way if they were played again."""
+    """Return the known moments whose forks would end the same way if they were played again."""
     if known is None or known.bots != wish.bots:
         return {}
     return {
@@ -278,7 +279,7 @@ def _end(result: Result | None, source: ForkSource, beat: int) -> MomentOdds | N
 
 
 def _content(bot: str) -> bytes:
-    """Return the content of a bot's file or a ghost's record; empty for a bot of the software."""
+    """Return the content of a bot's file or a ghost's record; empty for an installed bot."""
     is_ghost = bot.startswith(brains.GHOST)
     path = brains.ghost_file(bot)[0] if is_ghost else Path(bot).expanduser()
     return path.read_bytes() if (is_ghost or bot.endswith(".py")) and path.is_file() else b""

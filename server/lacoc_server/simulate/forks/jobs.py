@@ -22,16 +22,17 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """A fork to play."""
 
     file: str
-    """The record."""
+    """Path of the record."""
     beat: int
     take_back: int | None = None
     restart: tuple[str, ...] = ()
     scripts: dict[str, Script] = {}
-    """The key scripts by id of the seat, for seats that a script plays."""
+    """The key script of each seat that a script plays, by id of the seat."""
     bots: tuple[str, ...] = ()
-    """The bot of each seat, or `brains.RECORDED`; empty: all seats keep their recorded keys."""
+    """The bot of each seat; `brains.RECORDED`: the seat keeps its recorded keys. Empty: all seats
+    do."""
     variant: int = 0
-    """Number that chooses the delays of the bots; see `line.of_bot`."""
+    """Number that chooses how late the bots press their keys; see `line.of_bot`."""
     seconds: float | None = None
     match_id: str = "fork"
     folder: str | None = None
@@ -72,7 +73,7 @@ def attempt_fork(job: ForkJob) -> Forked | Phrase:
 
 @lru_cache(maxsize=1)
 def opened_record(file: str) -> ForkSource:
-    """Read a record; keep the newest one in memory, because many forks go on from it.
+    """Read a record, and keep it in memory until another is read: many forks go on from one.
 
     Raises:
         UserError: as `origin.read_source` does.
@@ -81,7 +82,7 @@ def opened_record(file: str) -> ForkSource:
 
 
 def bots_of(source: ForkSource, names: tuple[str, ...], folder: Path | None) -> list[BotFactory]:
-    """Find bots for a record's arena.
+    """Return the bots of these names, for a record's arena.
 
     Raises:
         UserError: if there is no such bot.

@@ -20,7 +20,7 @@ def read_odds(path: Path) -> Odds | None:
 
 
 def write_odds(path: Path, odds: Odds) -> None:
-    """Write the odds of a record; readers see the old file or the new one.
+    """Write the odds of a record; whoever reads meanwhile gets the old file or the new one, whole.
 
     Raises:
         UserError: if it can't be written.

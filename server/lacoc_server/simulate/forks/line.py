@@ -20,14 +20,14 @@ from lacoc_shared.words import say
 REFEREE = "fork"
 """Referee's name in the decisions that a fork adds."""
 _SEARCH_BEATS = BEATS_PER_S
-"""Beats in which a beat without recorded inputs is searched for a take-back. If there is none, the
-take-back comes in the first beat."""
+"""Number of beats among which one without recorded inputs is searched, for a take-back. If there is
+none, the take-back is in the first beat."""
 _SILENT_BEATS = BEATS_PER_S
 """Beats after the last recorded one until seats with recorded keys fall silent, as at a court."""
 _LATE_TICKS = BEATS_PER_S
-"""Longest time in a variant before a bot sees its first frame [ticks]."""
+"""Longest delay before a bot sees its first frame [ticks]."""
 _REACTION_TICKS = BEATS_PER_S // 5
-"""Longest time in a variant from a bot's choice of a key to its press [ticks]."""
+"""Longest delay from a bot's choice of a key to its press [ticks]."""
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 Press = Callable[[Match, Frame], Key | None]
@@ -39,11 +39,12 @@ class ForkChange:
     """What differs between a fork and its record; by default nothing."""
 
     take_back: int | None = None
-    """Number of an event that is taken back; None: none."""
+    """Number of the event that is taken back; None: no event is."""
     restart: tuple[str, ...] = ()
     """Ids of the seats whose robots are put back at a start place."""
     players: Mapping[int, Callable[[], Press]] = field(default_factory=dict)
-    """New players of seats, by index of the seat; all other seats press their recorded keys."""
+    """Makes the new player of a seat, by index of the seat; all other seats keep their recorded
+    keys."""
 
     @property
     def is_none(self) -> bool:
@@ -52,11 +53,11 @@ class ForkChange:
 
 
 class ForkLine:
-    """Gives a fork its inputs.
+    """Makes the inputs of a fork, beat by beat.
 
     Args:
         record: the record of the match, whole.
-        match: the match, after the last beat before the fork.
+        match: the match after the beat before the fork.
         change: how the fork differs from the record.
         seconds: how long the fork goes on at most [s]; None: until play ends.
     """
@@ -66,10 +67,10 @@ class ForkLine:
     ) -> None:
         self.match = match
         self.decided_beat: int | None = None
-        """Beat with the decisions of the change; None: it has not passed, or there are none."""
+        """Beat in which the decisions of the change are made; None: not yet, or there are none."""
         self.left_out = 0
-        """Recorded take-backs that were left out: they name events after the fork, which may have
-        other numbers in it.
+        """Number of recorded take-backs that were left out: they name events after the fork's first
+        beat, and the fork's own events may have other numbers.
         """
         self._change = change
         self._first = match.beats + 1
@@ -85,7 +86,7 @@ class ForkLine:
 
     @property
     def is_over(self) -> bool:
-        """True if the fork ends after the beats so far."""
+        """True if the fork is over, so that no further beat is played."""
         match = self.match
         if self._limit is not None and match.beats >= self._limit:
             return True
@@ -122,7 +123,7 @@ class ForkLine:
         return found
 
     def see(self, frame: Frame) -> None:
-        """Show the players the frame of a beat."""
+        """Show the new players the frame of a beat; note the keys that they press."""
         match = self.match
         if match.phase is not Phase.PLAYING:
             return
@@ -134,7 +135,7 @@ class ForkLine:
 
     @property
     def _kept_seats(self) -> list[int]:
-        """The seats that press their recorded keys."""
+        """Indices of the seats that press their recorded keys."""
         return [seat.index for seat in self.match.seats if seat.index not in self._change.players]
 
     def _kept(self, record: Record) -> Iterator[tuple[int, list[Input]]]:
@@ -157,15 +158,15 @@ class ForkLine:
     def _free_beat(self) -> int:
         """Return the first beat of the fork without recorded inputs: the beat for a take-back.
 
-        A take-back comes with a halt, and a halt refuses the keys of its beat. This beat has no
-        keys, so none is refused, and the robots go the same ways as in the record. If there is no
-        such beat soon, return the fork's first beat.
+        A take-back needs a halt, and a halt refuses the keys of its beat. In a beat without keys
+        none is refused, so the robots walk as in the record. If there is no such beat within
+        `_SEARCH_BEATS`, return the fork's first beat.
         """
         beats = range(self._first, self._first + _SEARCH_BEATS)
         return next((beat for beat in beats if beat not in self._recorded), self._first)
 
     def _decisions(self) -> Sequence[Input]:
-        """Return the decisions of the change.
+        """Return the decisions that make the change: halt, take-back, restarts, resume.
 
         If they halt the match, also note by how many beats the later recorded inputs are delayed.
         """
@@ -195,8 +196,8 @@ def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
     Args:
         bot: the bot.
         seat: index of its seat.
-        variant: 0: the bot reacts at once. Each other number has delays of its own: the bot sees
-            its first frame up to a second late, and each of its keys takes up to 0.2 s. A match has
+        variant: 0: the bot reacts at once. Each other number stands for other delays: the bot sees
+            its first frame up to a second late, and presses each key up to 0.2 s late. A match has
             no randomness, so only these delays make forks from one beat differ.
     """
 
@@ -207,7 +208,7 @@ def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
 
 
 class _BotPress:
-    """Presses the keys of a bot, with the delays of a variant."""
+    """Presses the keys of a bot, with the delays that belong to a variant's number."""
 
     def __init__(self, bot: BotFactory, seat: int, variant: int) -> None:
         self._bot = bot

@@ -1,9 +1,9 @@
 """The odds of a match over its course, from how its forks ended; pure.
 
 At some moments of the match, bots play forks to the end. A moment has few forks, so the share that
-the first seat won would be a rough number. The chance is instead the probability that it would win
-one more fork. That is computed by Student's t, as if margins (its points less those of the other
-seat) were normally distributed. Neighbouring moments share their forks.
+the first seat won would be a rough number. The chance is instead the probability that the first
+seat would win one more fork. Student's t gives it, as if margins (points of the first seat minus
+those of the second) were normally distributed. Neighbouring moments share their forks.
 """
 
 import math
@@ -16,12 +16,12 @@ import msgspec
 PRIOR_SPREAD = 1.0
 """Standard deviation of margins [points] that is assumed before any fork is seen."""
 PRIOR_WEIGHT = 2
-"""Number of forks that weigh as much as this assumption."""
+"""Number of forks that weigh as much as the assumed `PRIOR_SPREAD`."""
 NEAR_S = 5.0
 """Neighbouring moments that are at most this far apart on the clock share their forks [s]."""
 _SPARE_S = 0.001  # differences of times are not exact
 _SLOW = 0.1
-"""Stretches at the ends of a swing are cut off if each has less than this part of its change."""
+"""Part of a swing's change; stretches at its ends are cut off if they change the odds by less."""
 
 
 class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
@@ -30,13 +30,13 @@ class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     """First beat that the forks play themselves."""
     clock_s: float
-    """Seconds played until then."""
+    """Seconds played until this beat."""
     margins: tuple[float, ...]
     """Points of the first seat minus those of the second, at the end of each fork."""
     chance: float
     """Chance of the first seat to win, from 0 to 1; a draw counts half."""
     key: str = ""
-    """Hash of all that decides how these forks go (`chances.key`); "": the match was over."""
+    """Hash of all that decides how these forks end (`chances.key`); "": the match was over."""
 
 
 class Swing(NamedTuple):
@@ -86,7 +86,7 @@ def pooled(moments: Iterable[MomentOdds]) -> tuple[MomentOdds, ...]:
 
 
 def near_margins(ordered: Sequence[MomentOdds]) -> list[list[float]]:
-    """Return for each moment the margins of neighbouring moments that count for its chance too.
+    """Return, for each moment, the margins of its neighbours' forks that count for its chance too.
 
     Args:
         ordered: the moments of a match, in order.
@@ -135,7 +135,7 @@ def steps(moments: Iterable[MomentOdds]) -> list[Swing]:
 def swings(moments: Iterable[MomentOdds]) -> list[Swing]:
     """Return the stretches in which the odds only grew or only fell, the largest change first.
 
-    Slow beginnings and ends of these stretches are left out.
+    A beginning or end of a stretch in which they changed little (`_SLOW`) is left out.
     """
     runs = [[*run] for _, run in groupby(steps(moments), lambda step: step.change > 0)]
     found = [_without_slow_ends(run) for run in runs]
@@ -149,7 +149,7 @@ def _without_slow_ends(run: Sequence[Swing]) -> Swing:
 
 
 def grid(playing: Sequence[int], step: int) -> list[int]:
-    """Return the moments of a curve, at equal distances in play.
+    """Return the beats at which a curve of the odds has its moments, at equal distances in play.
 
     Args:
         playing: all beats in which play went on, in order.

@@ -1,4 +1,4 @@
-"""The part of a record from which a fork goes on, rewritten under the fork's own name."""
+"""The part of a record before a fork, copied with the fork's own names in it."""
 
 import hashlib
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _CALL = "fork"
 
 @dataclass(frozen=True)
 class ForkSource:
-    """A record to fork."""
+    """A record from which forks go on."""
 
     record: Record
     messages: tuple[Message, ...]
@@ -72,12 +72,12 @@ def read_source(path: Path) -> ForkSource:
 
 @dataclass(frozen=True)
 class Stem:
-    """A record up to the beat before a fork, under the fork's name."""
+    """A record up to the beat before a fork, with the fork's own names in it."""
 
     record: Record
-    """Header, sheets and results name the fork; everything else is as it was recorded."""
+    """The record; its header, sheets and results name the fork, all else is as recorded."""
     messages: tuple[Message, ...]
-    """`record` as messages for the fork's own record; measurements of health are left out."""
+    """`record` as messages, for the fork's own record; the court's health is left out."""
     setup: Setup
     """Setup of the fork."""
 
@@ -89,7 +89,7 @@ def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | No
         source: the record.
         beat: first beat that the fork plays itself.
         match_id: id of the fork.
-        changes: how the fork is made, for its record; None: the record does not say.
+        changes: how the fork differs, to be written in its record; None: nothing is written of it.
 
     Raises:
         UserError: if the record has no such beat.
@@ -107,7 +107,7 @@ def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | No
 
 
 def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | None) -> Setup:
-    """Return a fork's setup, without the court, match id and call of the match that was played."""
+    """Return a fork's setup; court, match id and call of the recorded match are replaced."""
     was = source.record.header.setup
     origin = Origin(
         match_id=was.match_id or source.match_id,
@@ -125,7 +125,7 @@ def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | 
 
 
 def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
-    """Return the messages before a beat, renamed for the fork, without measurements of health."""
+    """Return the messages before a beat with the fork's names, without the court's health."""
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

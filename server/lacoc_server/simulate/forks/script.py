@@ -1,4 +1,4 @@
-"""Plays a seat of a fork from a script of keys (`gait.key_script` has its form)."""
+"""Plays a seat of a fork from a key script (`gait.key_script` describes its form)."""
 
 from collections.abc import Callable
 
@@ -16,7 +16,7 @@ from lacoc_shared.words import say
 
 
 class Script(msgspec.Struct, frozen=True):
-    """A file with a script."""
+    """A file with a key script."""
 
     file: str
     """Path of the file, as it was given."""
@@ -50,7 +50,7 @@ def _script(file: Script) -> KeyScript:
 
 
 class _ScriptPress:
-    """The keys of a script."""
+    """Presses the keys of a script, at their times."""
 
     def __init__(self, script: KeyScript, seat: int) -> None:
         self._script = script
@@ -69,7 +69,7 @@ class _ScriptPress:
         return pressed
 
     def _key(self, match: Match, name: str) -> Key | None:
-        """Return the key of a name in the script; None if it changes the level, or is no key."""
+        """Return the key for a name in the script; None if it stands for a level, or for no key."""
         assert self._level is not None
         if name.isdecimal():
             return Key(self._level, int(name))

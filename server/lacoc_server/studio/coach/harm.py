@@ -1,4 +1,4 @@
-"""Finds which figures that a page shows became worse, so that such a table is not called better."""
+"""Finds figures of a page that a new table makes worse, so that it is not called better."""
 
 import math
 from typing import NamedTuple

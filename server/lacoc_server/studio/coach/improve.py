@@ -22,7 +22,7 @@ _POPULATION = 16
 _FEW = 24
 """The sizes "cell" and "three" try to change only this many numbers: those that matter most."""
 _CONFIRMED = 8
-"""Of tables with one more change, this many, the best by rough score, are tried exactly."""
+"""Number of tables with one more change that are tried exactly: the best by rough score."""
 _HOPEFUL = 0.9
 """A table with all numbers changed is tried exactly only if its rough score is above this part of
 the best score. If the best score is negative, the rough score may be as far below it."""
@@ -34,11 +34,11 @@ class Size(StrEnum):
     """How much of a table may change."""
 
     CELL = "cell"
-    """One number."""
+    """One number may change."""
     THREE = "three"
-    """At most three numbers."""
+    """At most three numbers may change."""
     TABLE = "table"
-    """All numbers."""
+    """All numbers may change."""
 
 
 IsOver = Callable[[], bool]

@@ -16,8 +16,8 @@ from lacoc_shared.words import Phrase
 
 MOST_REPAIRS = 3
 _TRIED, _EXACT = 12, 4
-"""Number of repairs, the most probable ones, that are tried roughly in a round, and number of these
-(the most probable one and the best others) that are then tried exactly."""
+"""In a round, this many of the most probable repairs are tried roughly. Then this many of them are
+tried exactly: the most probable one and the best others."""
 REPAIR_TRIALS = 1 + _TRIED + _EXACT
 """Number of trials of a round: the table itself, rough ones and exact ones."""
 _LEAST, _LEAST_SHARE = 3.0, 0.05

@@ -115,7 +115,7 @@ class Trials:
         return self._walks(tables, _ROUGH_WAY if rough else _EXACT_WAY)
 
     def spare(self, table: Angles, *, everything: bool) -> None:
-        """From now on lower the score of each table that makes a shown figure worse than this one.
+        """From now on lower the score of tables with a shown figure that is worse than `table`'s.
 
         Args:
             table: the table whose figures are compared.

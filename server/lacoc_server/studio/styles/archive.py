@@ -13,12 +13,13 @@ from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.goal import Goal
 
 _SPEEDS, _AROUSALS = 6, 5
-"""Cells along each axis."""
+"""Number of cells along each axis of the map."""
 _SPEED_PART, _AROUSAL_PART = 1 / 15, 1 / 50
-"""Size of a cell, as a part of the speed of a foot at a leg's length from a joint that turns with
-AngMin. So the cells of the workshop's robot are 20 and 6 mm/s wide."""
+"""Size of a cell along each axis, as a part of a speed: that of a foot at a leg's length from a
+joint which turns with AngMin. The cells of the workshop's robot are 20 and 6 mm/s wide."""
 _OWN_PART = 1 / 3
-"""A cell's size is at least this part of the own gait's value, so that the map has faster gaits."""
+"""A cell's size is at least this part of the value of the student's own gait on the axis, so that
+the map has room for faster gaits."""
 _STRAIGHT_DEG_S, _STRAIGHT_SIDE, _STRAIGHT_MM_S = 3.0, 0.25, 5.0
 """A gait is straight if it turns no faster than the first. Its speed sideways may be at most the
 second times its speed forward, or the third if that is larger."""
@@ -44,7 +45,7 @@ class MapGrid(NamedTuple):
     speed_mm_s: float
     """Width of a cell along the axis of forward speed."""
     arousal_mm_s: float
-    """Width of a cell along the axis of arousal."""
+    """Width of a cell along the axis of arousal (how excited a gait looks)."""
     speeds: int = _SPEEDS
     arousals: int = _AROUSALS
 
@@ -60,17 +61,17 @@ class MapGrid(NamedTuple):
 
     @property
     def speeds_mm_s(self) -> tuple[float, ...]:
-        """Lower ends of the cells along the axis of speed."""
+        """Lower ends of the cells along the axis of forward speed."""
         return tuple(index * self.speed_mm_s for index in range(self.speeds))
 
     @property
     def arousals_mm_s(self) -> tuple[float, ...]:
-        """Lower ends of the cells along the axis of arousal."""
+        """Lower ends of the cells along the axis of arousal (how excited a gait looks)."""
         return (0.0, *(index * self.arousal_mm_s for index in range(2, self.arousals + 1)))
 
 
 class Elite(NamedTuple):
-    """The best gait of a cell."""
+    """The best gait of a cell of the map."""
 
     angles_deg: Angles
     figures: Figures

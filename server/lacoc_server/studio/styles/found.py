@@ -14,7 +14,7 @@ from lacoc_server.trial.figures import Figures
 from lacoc_shared.studio import GaitDifference, MapCell, MapReply, OtherGait, VariantsReply
 
 _SEEN = 0.4
-"""Least difference in a way that is told [steps]; a smaller one can hardly be seen."""
+"""Smallest difference in a `Way` that students are told of [steps]; less can hardly be seen."""
 
 
 def map_reply(task: Task, key: int, found: Mapped) -> MapReply:

@@ -21,8 +21,8 @@ rounds."""
 _ENOUGH, _LEAST = 10, 8
 """Most tables of a round that are tried exactly, and number of good gaits that are enough."""
 _FAR, _NEAR = 2.0, 1.0
-"""Most steps by which a table is changed in a way, at the first request for variants and after many
-requests."""
+"""Largest change of a table in each `Way` [steps], at a student's first request for variants and
+after many requests."""
 _CALMER = 0.85
 """Factor of the steps from one round of trials to the next: with smaller changes, more robots stay
 upright."""
@@ -31,7 +31,7 @@ _WALKS = 0.25
 _SIDE = 0.5
 """A variant goes sideways with at most this part of its speed forward."""
 _PERIOD, _SPEED = 1.25, 1.35
-"""A period this many times longer, or a speed this many times higher, differs by one step."""
+"""A period this many times longer, or a speed this many times higher, counts as one step."""
 
 
 class Variant(NamedTuple):

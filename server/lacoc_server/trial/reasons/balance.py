@@ -1,4 +1,4 @@
-"""Finds when parts other than feet carry the robot, or balance is lost, and a number as cause."""
+"""Finds when other parts than feet carry the robot or balance is lost, and the number to blame."""
 
 import math
 from collections.abc import Iterator
@@ -106,5 +106,5 @@ def _foot_in_the_air(seen: SeenTrial) -> TableCell | None:
 
 
 def _most(seen: SeenTrial, ticks: Bools) -> int:
-    """Return the index of the posture that is the target in most of these ticks of the span."""
+    """Return the index of the posture that is the target in most of the given measured ticks."""
     return int(np.bincount(seen.walk.posture[seen.part][ticks], minlength=1).argmax())

@@ -1,4 +1,4 @@
-"""A key's table, and its comparison with the numbers of partners and mates.
+"""A key's table, and how far the numbers of legs differ that should move alike.
 
 In a gait of two halves each leg does half a cycle later what the leg opposite to it does now: that
 is its **partner**. Its **mates** are the legs that do the same at the same time: every second leg,
@@ -23,11 +23,11 @@ from lacoc_shared.words import Phrase, say
 SAME_DEG = 6.0
 """Two angles that differ by at most this much [deg] count as equal."""
 _MATES = 0.25
-"""Weight of differences between mates, if those between partners have the weight 1: mates often
-swing less than each other."""
+"""Weight of differences between mates (legs that do the same at the same time); differences between
+partners have the weight 1. Mates often swing by different amounts."""
 _OFFSET = np.array([1.0, 0.8, 0.8])
-"""Part of a constant difference between mates that is ignored, for each level: legs stand at
-different angles."""
+"""Part of a constant difference between mates that is ignored, for Root, 1st and 2nd joints: legs
+stand at different angles."""
 _OPPOSITE_M = 0.005
 
 
@@ -162,7 +162,7 @@ class KeyForm:
 
     @property
     def sequence(self) -> tuple[Posture, ...]:
-        """The postures [rad]."""
+        """The postures of the key's sequence [rad]."""
         rows = np.radians(self.angles_deg).reshape(self.postures, -1)
         return tuple(tuple(map(float, row)) for row in rows)
 
@@ -174,7 +174,7 @@ class KeyForm:
         return TableCell(cell.posture, cell.level, (cell.leg + 2) % self.legs)
 
     def degrees(self, cell: TableCell) -> float:
-        """Return the angle in a cell."""
+        """Return the angle in a cell [deg]."""
         return float(self.angles_deg[cell])
 
     def name(self, cell: TableCell) -> Phrase:
@@ -210,7 +210,7 @@ def cell_name(robot: RobotSpec, digit: int, postures: int, place: CellPlace) -> 
 
 
 def is_mirrored(robot: RobotSpec) -> bool:
-    """Return whether each leg has an opposite one: the legs counted from the end."""
+    """Return whether each leg is opposite to the leg with the same index from the end."""
     return len(robot.legs) % 2 == 0 and all(
         math.dist((one.position_m.x, one.position_m.y), (-other.position_m.x, other.position_m.y))
         < _OPPOSITE_M

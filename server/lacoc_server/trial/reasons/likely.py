@@ -10,7 +10,7 @@ from lacoc_server.trial.reasons.repairs import Repair, partner_repairs
 from lacoc_server.trial.reasons.shared import same_feet_repairs, shared_repairs
 
 _THRUST_DEG = 60.0
-"""Worth of the largest thrust of all repaired tables, on the scale of `KeyForm.oddness_deg`."""
+"""Degrees of oddness (`KeyForm.oddness_deg`) that the largest thrust of all repairs outweighs."""
 _WAY = 0.03
 """Cost of each degree that a joint turns between rows: of two rows that differ, the one with larger
 motions is taken to be wrong."""
@@ -27,8 +27,8 @@ class Weighed(NamedTuple):
     """A repair, and how probable it is."""
 
     worth: float
-    """Decrease of oddness, plus the gain in thrust, minus how rare the mistake is; on the scale of
-    `KeyForm.oddness_deg`."""
+    """How much less odd the table becomes (`KeyForm.oddness_deg`), plus the gain in thrust, minus
+    how rare the mistake is [deg]."""
     repair: Repair
     is_sure: bool
 

@@ -1,7 +1,8 @@
 """Lists the changes that would repair a table, each with its reason.
 
 Each change undoes one mistake of a beginner: in a sign, a number, a leg, a row, the order of rows,
-a side, or half of the cycle. It takes the numbers of the partners, which do not have this mistake.
+a side, or half of the cycle. It uses the numbers of the partners (the opposite legs), which do not
+have this mistake.
 """
 
 from collections.abc import Iterator
@@ -65,7 +66,7 @@ def _cells(form: KeyForm) -> Iterator[Repair]:
 
 
 def _legs(form: KeyForm) -> Iterator[Repair]:
-    """Yield repairs of a joint or a whole leg: partner's numbers, other sign, other times."""
+    """Yield repairs of a joint or a whole leg: its partner's numbers, other sign or other time."""
     angles, odd = form.angles_deg, form.odd_deg
     for leg in range(form.legs):
         if odd[:, :, leg].max() <= 0:
@@ -102,7 +103,7 @@ def _legs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _rows(form: KeyForm) -> Iterator[Repair]:
-    """Yield repairs of rows: two rows change places, or a row gets its partner's numbers."""
+    """Yield repairs of rows: two rows are swapped, or a row gets the numbers of its partners."""
     angles = form.angles_deg
     for row in range(form.postures):
         for other in range(row + 1, form.postures):

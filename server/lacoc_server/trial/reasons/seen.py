@@ -38,7 +38,7 @@ class SeenTrial:
 
     @property
     def part(self) -> slice:
-        """The measured ticks."""
+        """The measured ticks, as a slice of all ticks."""
         return slice(self.walk.span.first, self.walk.span.end)
 
     @property

@@ -37,7 +37,7 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Format(Protocol):
-    """A format; pure."""
+    """How a stage is played: who meets whom, and how teams are ranked; pure."""
 
     settings: frozenset[str]
     """The names of the settings that it reads, such as "rounds"."""

@@ -31,7 +31,7 @@ class Knockout(DrawnAtOnce):
         self.settings = frozenset({"games", "extra_games", "reset" if double else "third_place"})
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
-        """Return the bracket."""
+        """Return all pairings of the bracket."""
         if len(stage.entries) < 2:
             return ()
         return tuple(double_bracket(stage) if self.double else single_bracket(stage))
@@ -92,7 +92,7 @@ def _leaving(match: ContestMatch) -> list[str]:
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
-    """Place the teams in a bracket: the best two can meet only in the final, and so on.
+    """Place the teams in a bracket, so that the best two can meet only in the final, and so on.
 
     The list has a team or a bye for each place of round 1: as many as the next power of two. The
     best teams have the byes.
@@ -215,7 +215,7 @@ def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
 
 
 def _turned(falling: Sequence[AnySource], number: int) -> list[AnySource]:
-    """Reorder the teams that fall: reverse them after even rounds, swap halves after odd ones."""
+    """Reorder the losers of a round: reverse them after even rounds, swap halves after odd ones."""
     half = len(falling) // 2
     return [*reversed(falling)] if number % 2 == 0 else [*falling[half:], *falling[:half]]
 

@@ -75,11 +75,11 @@ def circle_round(players: int, number: int) -> Iterator[tuple[int, int]]:
     everybody has met everybody, the rounds come again in reverse order with seats swapped. So after
     any number of rounds, each player's numbers of matches in the two seats differ by at most one.
 
-    The players sit on a circle; of an even number, the last one sits outside. In each round another
-    player on the circle is the pivot. Two players at the same distance from the pivot meet. The
-    pivot meets the player outside, or rests. The seats depend on the distance and on the side of
-    the pivot. So a player changes the seat in each round, not counting the round as pivot. In that
-    round the player takes the left seat if the round's number is even, else the right one.
+    The players sit on a circle; if their number is even, the last one sits outside. In each round
+    another player on the circle is the pivot. Two players at the same distance from the pivot meet.
+    The pivot meets the player outside, or rests. The seats depend on the distance and on the side
+    of the pivot. So a player changes the seat in each round, except as pivot. The pivot takes the
+    left seat if the round's number is even, else the right one.
 
     Args:
         players: number of players.

@@ -19,7 +19,7 @@ _LAPS = 10
 
 
 class Sequential(DrawnByRound):
-    """The sequential format, as described above."""
+    """Lets everybody meet everybody again and again, until the first places are decided."""
 
     settings = frozenset({"confidence", "games", "places", "rounds", "tie_breaks"})
     decisive = False
@@ -27,7 +27,7 @@ class Sequential(DrawnByRound):
     order = ORDER
 
     def rounds(self, stage: Stage) -> int:
-        """Return the largest number of rounds."""
+        """Return the largest number of rounds that the stage can have."""
         return stage.settings.rounds or _LAPS * _lap(stage)
 
     def is_decided(

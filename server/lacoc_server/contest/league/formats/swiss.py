@@ -32,9 +32,9 @@ class SwissTeam(msgspec.Struct, kw_only=True):
 
     team: str
     number: int
-    """Its place in the seeding, from 1."""
+    """The team's place in the seeding, from 1."""
     points: int = 0
-    """2 for a match won, 1 for a draw."""
+    """The team's points so far: 2 for a match won, 1 for a draw."""
     met: set[str] = msgspec.field(default_factory=set)
     sides: list[int] = msgspec.field(default_factory=list)
     """For each match with a game: 1 if it sat left, −1 if right."""
@@ -50,7 +50,7 @@ class SwissTeam(msgspec.Struct, kw_only=True):
 
 
 class Swiss(DrawnByRound):
-    """The Swiss format, as described above."""
+    """Pairs teams with equal points, round by round; nobody meets twice where it can be avoided."""
 
     settings = frozenset({"games", "rounds", "tie_breaks"})
     decisive = False
@@ -193,11 +193,12 @@ def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTe
 
 
 def _colours(player: SwissTeam) -> list[str]:
-    """Return a history of colours that makes the engine give a team the side that it is due next.
+    """Return colours (sides) of past games that make the engine give a team the side it is due.
 
     The engine forces a change only after the same colour twice. Here a team must change as soon as
     it has sat more often on one side than on the other. So the engine is told that the team had
-    that side's colour twice. If both counts are equal, it is told one of each, the last side last.
+    that side's colour in its last two games. If both counts are equal, it is told one of each, the
+    last side last.
     """
     if not player.sides:
         return []
@@ -208,7 +209,7 @@ def _colours(player: SwissTeam) -> list[str]:
 
 
 def _legal(pairs: Iterable[tuple[SwissTeam, ...]], players: Sequence[SwissTeam]) -> bool:
-    """Say whether everybody is paired once, and no rule is broken."""
+    """Return whether everybody is paired once, and no rule is broken."""
     found = list(pairs)
     everybody = sorted(player.number for pair in found for player in pair)
     byes = sum(len(pair) == 1 for pair in found)
@@ -255,7 +256,7 @@ def fewest_faults(players: Sequence[SwissTeam]) -> list[tuple[SwissTeam, ...]]:
 
 
 def _cost(pair: Sequence[SwissTeam], apart: int, fold: int, many: int) -> int:
-    """Return the cost of a pair; one graver fault costs more than lesser faults in all other pairs.
+    """Return the cost of a pair; a graver fault costs more than lesser faults in all other pairs.
 
     The gravest are those that `faults` counts, in its order. Then comes `apart`, then `fold`.
 

@@ -16,16 +16,16 @@ class Break(msgspec.Struct, frozen=True, kw_only=True):
     until_ms: int
     """Its end, in milliseconds since 1970, UTC; 0: it lasts until the organiser ends it."""
     fixture: Phrase | None = None
-    """Name of the match after it: "Semi-final 1"; None: no match is known to follow."""
+    """Name of the match after the break: "Semi-final 1"; None: no match is known to follow."""
     who: tuple[Phrase, Phrase] | None = None
-    """The left and the right side of that match, as far as they are known."""
+    """The left and the right side of the match after the break, as far as they are known."""
 
 
 def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:
     """Return the break that is on now, or else the newest one; None: there was none.
 
-    It follows from the facts alone, so its end may be past: whoever shows it compares that with the
-    clock.
+    It follows from the facts alone, so its end may be past: whoever shows it compares its end with
+    the clock.
 
     Args:
         contest: the contest.

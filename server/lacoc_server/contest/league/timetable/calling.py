@@ -42,7 +42,7 @@ class SeenCourt(NamedTuple):
     call: str = ""
     """Id of the call whose match the court has; "": none."""
     begun: bool = False
-    """Whether play has begun in this match."""
+    """Whether play has begun in the match of the call."""
     ended: GameEnd | None = None
     """How the match ended; None: it has no official result."""
     there: bool = False

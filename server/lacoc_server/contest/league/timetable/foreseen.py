@@ -32,7 +32,7 @@ class Foreseen(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def pairing(self) -> Pairing:
-        """The pairing."""
+        """The pairing of the match."""
         return self.match.pairing
 
 

@@ -79,10 +79,10 @@ def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, 
 def kept_apart(
     contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return an order of teams with fewer first meetings of teams that the plan keeps apart.
+    """Return an order of teams in which fewer of those to keep apart are certain to meet.
 
-    These are teams of one club (`apart`), and teams that have met before (`met_apart`). The order
-    changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
+    A plan may keep apart teams of one club (`apart`), and teams that met before (`met_apart`). The
+    order changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
     """
     return _set_apart(_apart(contest, plan, how, len(order)), order)
 
@@ -90,11 +90,11 @@ def kept_apart(
 def moved_apart(
     contest: Contest, plan: Planned, how: Format, entries: tuple[str, ...]
 ) -> dict[str, Phrase]:
-    """Say for each team whose seed is not its rank which pairs were kept apart by that.
+    """Return, by team, a phrase that says why its seed differs from its rank: pairs kept apart.
 
-    These are the pairs with the team itself. If it only made room for others, all such pairs are
-    named. The result is empty if the order is not the plan's: a lot or the organiser made it, or
-    the ranking was corrected since.
+    It names the pairs that the team itself would be in. If the team only made room for others, it
+    names all pairs that were kept apart. The result is empty if the order is not the plan's: a lot
+    or the organiser made it, or the ranking was corrected since.
 
     Args:
         contest: the contest.

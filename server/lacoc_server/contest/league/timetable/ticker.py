@@ -22,7 +22,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Ticker:
-    """Returns a line for each thing that happens, once.
+    """Makes a line, once, for each thing that happens in the contest.
 
     Args:
         facts: the facts that are there already; they give no lines.

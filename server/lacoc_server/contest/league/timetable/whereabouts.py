@@ -42,8 +42,8 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _LONGEST = 20
-"""A game that seems to have lasted this many times the usual length is ignored: the clock was
-set."""
+"""A game that seems to have lasted this many times the usual length is ignored: the
+machine's clock was set meanwhile."""
 _COUNTED = 15
 """The usual length of a game is computed from so many of the newest games."""
 _STEP_S = 5
@@ -62,7 +62,7 @@ class SeenCourts(NamedTuple):
 
 
 class ContestPace(NamedTuple):
-    """How fast the contest goes."""
+    """The time now, and how long games and rests take."""
 
     now_ms: int
     """The time, in milliseconds since 1970, UTC."""
@@ -121,7 +121,7 @@ def whereabouts(
     Args:
         contest: the contest.
         courts: its courts.
-        pace: how fast it goes.
+        pace: the time now, and how long games and rests take.
         begins: when and where matches probably begin, by pairing, from `starts`.
     """
     calls = {team: call for call in contest.running for team in call.teams}
@@ -150,7 +150,7 @@ def whereabouts(
 
 
 def _news(contest: Contest) -> dict[str, Phrase]:
-    """Say for each team the newest decision about one of its matches since its last game.
+    """Return, by team, the newest decision about one of its matches since its last game, in words.
 
     A decision that has no effect is left out, for example about a team that was replaced since.
     """
@@ -218,8 +218,8 @@ def _waits(
         view: the stage of the match.
         match: the match.
         start: when it probably begins; None: nobody knows.
-        pace: how fast the contest goes.
-        away: the teams that have not come to their game, by its court.
+        pace: the time now, and how long games and rests take.
+        away: by court, the teams that have not joined the game that was called there.
     """
     about = fixture(contest, view, match, max(1, match.next_game), stands=True)
     opponent = match.teams[match.teams[0] == team] or ""
@@ -340,7 +340,7 @@ def starts(
         contest: the contest.
         coming: its matches that are still to come, from `foreseen`.
         seen: the courts, in the order in which they are filled.
-        pace: how fast it goes.
+        pace: the time now, and how long games and rests take.
     """
     now_ms, game, rest_ms = pace
     plans = {view.name: view.plan for view in contest.stages}
