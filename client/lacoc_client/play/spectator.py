@@ -253,7 +253,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer when it has come, only once; None before and after this."""
+        """Return the answer once it has arrived; None before that, and after it was returned."""
         if self._question is None:
             return None
         try:

@@ -24,7 +24,7 @@ def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[F
     """Check the link to a court, as a spectator sees it.
 
     Args:
-        access: the way to the court.
+        access: how to reach the court.
         seconds: how long the court's frames are counted.
         planned: whether the court stands in a contest file; then it need not run yet.
     """

@@ -119,7 +119,7 @@ class Guard:
 def machine_of(scope: Scope) -> str:
     """Return the address of the machine that asks.
 
-    Behind a proxy that is believed, the proxy says it. "" if it is not known.
+    Behind a trusted proxy, it is the address that the proxy names. "" if it is not known.
     """
     client = scope.get("client")
     return client[0] if client else ""

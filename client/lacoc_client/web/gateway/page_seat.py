@@ -56,7 +56,7 @@ class PageSeat:
 
         Args:
             asked: the page's request.
-            watching: the way to the court, as a spectator.
+            watching: how to reach the court, as a spectator.
             joined: called with the result of the join, on another thread.
 
         Raises:

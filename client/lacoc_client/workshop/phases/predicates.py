@@ -149,7 +149,7 @@ class TriedWhere:
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Return the outcome of the trial that keeps most of the limits.
 
-        Of equal ones, of the last.
+        If several trials keep equally many, it is the last of these.
         """
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [every([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]

@@ -25,11 +25,11 @@ from lacoc_shared.words import say
 
 _LONGEST_NAME = 20
 _CHANGES_HZ, _CHANGES_BURST = 10.0, 60
-"""How many changes of all groups pass a second, and at once; each change is told to the whole
-class."""
+"""How many changes of groups a class may make: in a second on average, and in a burst. Each change
+is told to the whole class."""
 _OWN_HZ, _OWN_BURST = 1.0, 20
-"""How many changes by one student pass a second, and at once, so that one student can't use up
-those of all."""
+"""How many of these changes one student may make: in a second on average, and in a burst. So one
+student can't use up the changes of the class."""
 
 
 class Groups:
