@@ -202,6 +202,6 @@ def beside(folder: Path, name: str) -> str:
 
 
 def _any_host(address: str) -> str:
-    """Return the address of an address's port at all addresses of a machine."""
+    """Return an address with the same protocol and port, but for all addresses of a machine."""
     protocol, port = address.partition("/")[0], address.rpartition(":")[2]
     return f"{protocol}/{ANY_HOST[0]}:{port}"
