@@ -72,7 +72,7 @@ class _Walker(ABC):
 class NearestDisc(_Walker):
     """Goes to the nearest disc that it can flip.
 
-    If there is none, to an own disc beside such a disc.
+    If there is none, it goes to the nearest own disc from which it can flip a disc beside it.
     """
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:

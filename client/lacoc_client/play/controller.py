@@ -47,8 +47,8 @@ _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
 _REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
 """For a player who sees the frames elsewhere, such as on a page: greatest age of a frame that a
-repeated command names [beats]. The court accepts frames that are a second older, so that the command
-has time to arrive."""
+repeated command names [beats]. The court accepts frames that are a second older, so the command has
+time to arrive."""
 _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
