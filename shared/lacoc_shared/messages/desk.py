@@ -415,7 +415,7 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
     met: tuple[tuple[str, str], ...] = ()
     """Pairs of teams of this stage that met in the stage before."""
     apart: tuple[str, ...] = ()
-    """An order of the teams in which fewer of these pairs meet again; empty: there is no better
+    """An order of the teams in which fewer pairs of `met` meet again; empty: there is no better
     order."""
 
 

@@ -22,7 +22,7 @@ _LOOKED_AT = 0.15
 _KNOWN_LEAST = 20
 """While fewer moments than this are known, `_AT_FIRST` is used instead of them."""
 _AT_FIRST = 6.0
-"""Assumed points of the worst moment of the best tenth."""
+"""While too few moments are known: the assumed points of the worst of the best 10 % of moments."""
 _MOST = 8
 """How many coming moments are compared at most."""
 

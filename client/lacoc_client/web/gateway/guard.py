@@ -52,7 +52,7 @@ class Guard:
         self._public = public
         self._names = machine_names() | ({public.host} - {""})
         self._held: Counter[str] = Counter()
-        """WebSockets that are open, by the address of their machine."""
+        """Number of open WebSockets of each machine, by its address."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a connection on to the application, or refuse it."""

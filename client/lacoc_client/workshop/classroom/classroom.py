@@ -68,7 +68,7 @@ _QUIET_LOOK_S = 10.0
 
 
 class Classroom:
-    """A class; a `Host`. Used from the event loop only.
+    """A class, the `Host` of its students' pages; used from the event loop only.
 
     Args:
         folder: folder of the class.
