@@ -28,9 +28,9 @@ def courts(
 
     Args:
         link: a link, or the address of pages.
-        court: the court's name; None: the court that the link names counts, if it names one.
-        connect: address of a court, used without a link; several, with commas: the court is at one
-            of them.
+        court: the court's name; None: the court that the link names, if it names a court.
+        connect: address of a court, used without a link; or several addresses with commas, if the
+            court is at one of these.
         token: the token, used without a link.
         authority: file with the certificate of a private authority, used without a link.
 

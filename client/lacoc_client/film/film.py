@@ -53,7 +53,7 @@ class FilmPart:
 
         Args:
             first: the first beat that may be shown.
-            last: the last one.
+            last: the last beat that may be shown.
         """
         if self.count is None:
             return plan.whole(first, last)

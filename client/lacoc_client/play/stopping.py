@@ -9,7 +9,7 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, kill, a closed window
 
 @contextmanager
 def stop_signals() -> Iterator[Callable[[], bool]]:
-    """Catch the signals that ask the program to end; give a function that says if one came.
+    """Catch signals that ask the program to end; yield a function that returns if one has come.
 
     Signals are caught until the block ends, or until the first one has come: a second signal ends
     the program as usual.

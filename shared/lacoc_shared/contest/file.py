@@ -73,10 +73,10 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def own_host(self) -> str:
-        """Host of this machine for others: with a certificate, that of the pages' address.
+        """Host name or address by which others reach this machine.
 
-        A public certificate is for this name, and not for an IP address. Otherwise the host is this
-        machine's IP address.
+        With a certificate it is the host of the pages' address, because a public certificate is for
+        this name. Without a certificate it is this machine's IP address.
         """
         return (self.public.host if self.public.pair else "") or own_address()
 

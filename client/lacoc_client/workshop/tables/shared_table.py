@@ -26,7 +26,7 @@ table."""
 _REFUSED_COST = 10
 """An update that is refused counts so many times, because the document must be read again."""
 _PEOPLE_S = 0.05
-"""Least time between two messages about where the others are [s]."""
+"""Least time between two messages that tell pages at which cells the other pages are [s]."""
 
 _FORGET_AFTER = 20_000
 """The memory of who typed into which cell is cleared when it has more cells than this."""
