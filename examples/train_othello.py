@@ -98,8 +98,8 @@ def columns() -> list[int]:
 def teach(seen: Seen) -> npt.NDArray[np.int64]:
     """Return for each row what the teacher would do there.
 
-    It goes to the nearest disc that is not its own and has an own disc beside it. If it stands on a
-    disc that is not its own, it first goes to an own one.
+    The teacher goes to the nearest disc that is not its own and has an own disc beside it. If it
+    stands on a disc that is not its own, it first goes to an own disc.
     """
     place, look, other, own = seen[:, :2], seen[:, 2:4], seen[:, 4:6], seen[:, 8:] > 0.9
     gaps = np.abs(discs_m()[:, None] - discs_m()).max(2)

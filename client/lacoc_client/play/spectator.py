@@ -249,7 +249,7 @@ class _Lacking:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
     def forget(self) -> None:
-        """Drop the open request, because the message came by itself."""
+        """Drop the open request, because the message has arrived without it."""
         self._question = None
 
     def take(self) -> bytes | None:

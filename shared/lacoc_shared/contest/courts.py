@@ -117,7 +117,7 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
     Args:
         name: the court's name.
         table: the court's table in the file.
-        number: its index among the courts; a court without `listen` gets a port by it.
+        number: its index among the courts, which chooses the port of a court without `listen`.
         folder: the contest file's folder.
         protocol: protocol of addresses that name none: "tls" in a contest with a certificate.
 

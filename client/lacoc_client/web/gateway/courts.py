@@ -1,4 +1,4 @@
-"""The courts of a gateway, and the limits on how many pages may come."""
+"""The courts of a gateway, and the limits on how many pages may connect."""
 
 import asyncio
 import hmac

@@ -13,8 +13,8 @@ SYMBOLS = 4
 CHEERS_HZ = 1.0
 """How many cheers of a page count in a second."""
 LOOKS_S = 10
-"""Time between two reports of a page that fetches a match in pieces that it is there [s]. Of a very
-large crowd only a share of the pages reports."""
+"""A page that fetches a match in pieces reports this often that it is there [s]. Of a very large
+crowd only a share of the pages reports."""
 HEARD_MOST = 200
 """How many reports of pages are wanted in `LOOKS_S`: in a larger crowd only a share of the pages
 reports."""

@@ -4,7 +4,7 @@ import msgspec
 
 
 class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a gateway, for programs that watch it, and how the request came to it."""
+    """The state of a gateway, for programs that watch it, and how their request reached it."""
 
     version: str
     """Version of LACOC."""

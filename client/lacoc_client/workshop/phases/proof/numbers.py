@@ -146,7 +146,7 @@ def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
 
 
 def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
-    """Return the guesses of where a foot goes that count, in order.
+    """Return, in order, those guesses of where a foot goes that count.
 
     A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
     seen before where the foot goes if this joint turns in this direction.

@@ -83,7 +83,7 @@ def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where a foot goes after another change of the joint of the student's last guess."""
+    """Ask where a foot goes if the last guessed change is undone, or made on the mirrored leg."""
     guess = foot_guesses(seen)[-1]
     joint, leg = _LEVELS[guess.level], _label(guess.of_legs, guess.leg)
     way = _WAYS.get(_main_way(guess), say("phases.way-still"))
