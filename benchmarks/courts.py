@@ -219,7 +219,7 @@ def _on_last_core(
 
 
 def _sleep() -> None:
-    """Sleep from beat to beat as a court does; answer each input line with beats and slow beats."""
+    """Sleep from beat to beat as a court does; for each input line print beats and slow beats."""
     pace, beats = Pace(time.monotonic()), 0
     os.set_blocking(sys.stdin.fileno(), False)
     print("{}", flush=True)

@@ -1,4 +1,4 @@
-"""Measures environments: time of steps and of rows of environments; tests of saves and records.
+"""Measures how fast environments step, on one core and on two, and tests their saves and records.
 
 python -m benchmarks.environments steps      # a step against mj_step along the same path
 python -m benchmarks.environments rows       # rows on two cores against one, and bare physics

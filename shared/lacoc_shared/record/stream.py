@@ -271,7 +271,7 @@ class _Found(NamedTuple):
 
 
 def _records(data: bytes) -> Iterator[_Found]:
-    """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
+    """Yield the MCAP records of a file, also those in its chunks, up to the size limit of a match.
 
     Raises:
         McapError: if a chunk is too large, or has a compression that LACOC does not use. If the

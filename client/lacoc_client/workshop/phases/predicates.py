@@ -15,7 +15,7 @@ from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_shared.words import Phrase
 
 _NEARLY = 0.99
-"""Largest share of a rule that is not met yet."""
+"""Largest share that is reported for a rule that is not met yet."""
 
 
 @dataclass(frozen=True)

@@ -231,10 +231,10 @@ class SharedTable:
         return self._draft
 
     def _keep_draft(self, before: Mapping[str, Entry]) -> None:
-        """Note that the table is about to differ from the draft.
+        """Note that the table has changed, so that the draft is old.
 
-        Before a change of anything else than numbers, the table as it was becomes the draft:
-        perhaps it was the last complete one.
+        A change of anything else than numbers may make a table incomplete. Then the table as it was
+        before the change becomes the draft.
         """
         after = self._document.entries
         changed = (name for name in {*before, *after} if before.get(name) is not after.get(name))
