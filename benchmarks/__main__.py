@@ -1,4 +1,4 @@
-"""`make bench`: what beats, matches, the gateway and the pages cost, as ratios of one run."""
+"""`make bench`: measures beats, matches, gateway and pages against baselines of the same run."""
 
 import json
 import sys

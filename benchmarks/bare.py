@@ -1,4 +1,4 @@
-"""Matches to measure, and bare MuJoCo physics that takes the same paths."""
+"""Matches to measure, and the same movements in MuJoCo alone, without a court."""
 
 import time
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ def keys_at(tick: int) -> list[Input]:
 
 
 class BarePath:
-    """The whole model of a match, which only MuJoCo steps, with the controls of the match."""
+    """The whole model of a match, stepped by MuJoCo alone with the controls of the match."""
 
     def __init__(self, world: World) -> None:
         self._model = world.whole

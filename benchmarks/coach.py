@@ -2,7 +2,7 @@
 
 python -m benchmarks.coach matters            # rank the sample's numbers: time, Kendall's tau
 python -m benchmarks.coach beginners --tables 50 --size table
-python -m benchmarks.coach sample             # from the sample, under both ways to advance
+python -m benchmarks.coach sample             # from the sample, for both values of `advance`
 python -m benchmarks.coach map                # the sample's map of gaits
 python -m benchmarks.coach variants           # six variants of the sample, and six bred from two
 

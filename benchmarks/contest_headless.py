@@ -39,7 +39,7 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_shared.command import screen
 
 _DASK_MOST = 1.05
-"""Most that Dask may cost, as a multiple of the pool's time."""
+"""Longest time with Dask, as a multiple of the time with the processes of this machine."""
 _AGAIN_MOST_S = 2.0
 _SETTINGS = Path(__file__).parents[1] / "examples" / "dask.yaml"
 _STAGE = """

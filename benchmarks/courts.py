@@ -6,14 +6,14 @@
     python -m benchmarks.courts --scrapes 10
 
 Each court has a process of its own and is in PLAYING; one process holds all seats and presses keys.
-Rounds without and with the crowd take turns; without a crowd there are only the former. The crowd
+Rounds without and with the crowd take turns; by default there is no crowd at all. The crowd
 is any number of pages through one gateway, which watch the courts in turns, of direct spectators of
 the first court, and of scrapes of its metrics a second (Prometheus makes one in 15 s). It runs in
 its own processes on the last core, where it disturbs the courts least (Linux only).
 
 The time of a beat is its whole work on the wall clock. A slow beat starts more than 20 ms late; a
 sleeper, which wakes 50 times a second and does nothing else, shows how late the machine is by
-itself. A beat that the courts did not catch up with is missed.
+itself. A beat is missed if it was due and a court never ran it.
 """
 
 import json
@@ -37,7 +37,7 @@ from lacoc_server.court.pace import Pace
 from lacoc_shared.seat import BEATS_PER_S, Phase
 
 MOST_SLOW = 0.001
-"""Largest share of slow beats, without the sleeper's."""
+"""Largest share of slow beats, after the share of the sleeper's slow beats was subtracted."""
 MOST_RATIO = 1.2
 """Most by which a crowd may make the 99th percentile of beats longer."""
 HUNDREDS = 300
@@ -210,7 +210,7 @@ def _entry(opened: dict[str, Any]) -> str:
 def _on_last_core(
     what: str, address: str, number: int, names: str
 ) -> Iterator[subprocess.Popen[str]]:
-    """Give a crowd's process once all of it is there."""
+    """Run a crowd's process on the last core; yield it when the whole crowd is connected."""
     words: Sequence[str] = ("--address", address, "--number", str(number), "--courts", names)
     with started("tests.processes.crowd", what, *words, "--hz", str(PAGES_HZ)) as process:
         os.sched_setaffinity(process.pid, sorted(os.sched_getaffinity(0))[-1:])
@@ -219,7 +219,7 @@ def _on_last_core(
 
 
 def _sleep() -> None:
-    """Sleep from beat to beat as a court does; answer each input line with beats and slow beats."""
+    """Sleep from beat to beat as a court does; for each input line print beats and slow beats."""
     pace, beats = Pace(time.monotonic()), 0
     os.set_blocking(sys.stdin.fileno(), False)
     print("{}", flush=True)

@@ -14,8 +14,8 @@ minute, and no cut away from a match that is close in its last 30 s. `best` is w
 picture could reach with a director that knows the future and keeps these rules, by dynamic
 programming over all ways to cut.
 
-It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of them on air, in `spread` or
-`at_once`.
+It ends with 1 if a rule was broken, or if `ahead` had less than 90 % of these swings on air, in
+`spread` or `at_once`.
 """
 
 import os
@@ -60,7 +60,7 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Line(msgspec.Struct, frozen=True):
-    """A match as a line of scores; a point wherever phase or scores change."""
+    """A match as a series of scores: it has a point for each change of phase or scores."""
 
     duration_s: float
     points: tuple[Point, ...]
@@ -104,7 +104,7 @@ class Cut(NamedTuple):
 
     at_s: float
     court: str
-    """"": the picture was taken away."""
+    """Name of the court; "": the picture disappeared."""
 
 
 class Directed(NamedTuple):
@@ -117,7 +117,7 @@ class Directed(NamedTuple):
 
 @dataclass(frozen=True)
 class Placed:
-    """A line on the clock of the event."""
+    """A match's series of scores, on the clock that all matches of the event share."""
 
     name: str
     line: Line
@@ -219,14 +219,14 @@ def of_windows(moments: list[Moment], window_s: float) -> list[Moment]:
 
 
 class _Way(NamedTuple):
-    """A way to direct up to a moment; `best_possible` keeps ways by the court that is on air."""
+    """One choice of cuts up to a moment; `best_possible` keeps choices by the court on air."""
 
     shown: int
-    """How many moments it has shown."""
+    """How many moments were shown."""
     free_s: float
-    """The court on air is needed until then."""
+    """Time until which the court on air must stay on air [s]."""
     cuts: tuple[float, ...]
-    """The last four, the oldest first."""
+    """Times of the last four cuts, the oldest first [s]."""
 
 
 def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
@@ -257,7 +257,7 @@ def best_possible(moments: list[Moment], courts: list[Placed]) -> int:
 
 
 def _undominated(ways: list[_Way]) -> list[_Way]:
-    """Leave out each way if another one is at least as good in everything."""
+    """Return the choices of cuts without each one that another equals or betters in everything."""
     kept: list[_Way] = []
     for one in sorted(set(ways), key=lambda way: (-way.shown, way.free_s, way.cuts)):
         if not any(
@@ -291,7 +291,7 @@ def measure(courts: list[Placed], ahead_s: float) -> dict[str, Any]:
 
 
 def largest(courts: list[Placed]) -> list[Moment]:
-    """Return the swings that count."""
+    """Return the 10 % largest swings of all courts."""
     return tenth(sorted(moment for one in courts for moment in one.moments()))
 
 
@@ -317,7 +317,7 @@ def told(events: list[list[Placed]], ahead_s: float) -> dict[str, Any]:
 
 
 def best(events: list[list[Placed]]) -> float:
-    """Return the share that a director who knows the future could show in the first picture."""
+    """Return the share of swings that a director who knows the future could show on air."""
     wanted = [largest(one) for one in events]
     shown = sum(best_possible(one, event) for one, event in zip(wanted, events, strict=True))
     return round(shown / sum(map(len, wanted)), 3)

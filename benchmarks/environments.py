@@ -1,4 +1,4 @@
-"""What environments cost: a step against bare physics, rows on two cores, loads, proven records.
+"""Measures how fast environments step, on one core and on two, and tests their saves and records.
 
 python -m benchmarks.environments steps      # a step against mj_step along the same path
 python -m benchmarks.environments rows       # rows on two cores against one, and bare physics
@@ -51,8 +51,8 @@ def steps(game: str, rounds: int) -> dict[str, Any]:
 def _steps(game: str, rounds: int, beats: int) -> dict[str, float]:
     """Return how many times as long as bare physics a step takes: the median of some rounds.
 
-    Bare physics is `mj_step` of the whole model, which records name; and `mj_step` of the model
-    that worlds step, which takes less time.
+    Bare physics is `mj_step`, of two models: of the whole model, whose hash is in records, and of
+    the smaller model that worlds step.
     """
     env = LacocParallelEnv(game, beats=beats)
     env.reset(seed=1)
@@ -85,7 +85,7 @@ def _steps(game: str, rounds: int, beats: int) -> dict[str, float]:
 def _bare_s(env: LacocParallelEnv, actions: list[dict[str, int]]) -> dict[str, float]:
     """Take some steps, then time bare physics along their path [s]; it must end in the same bits.
 
-    The environment has taken them then, too.
+    After this the environment has taken these steps.
     """
     world: Any = env._episode.match.physics
     state = np.frombuffer(world.save()[8:]).copy()
@@ -150,7 +150,7 @@ def rows(game: str, rounds: int) -> dict[str, Any]:
 
 
 def _physics_alone(world: Any) -> None:
-    """Let ten blocks of ticks pass from a world's state, in a copy."""
+    """Step a copy of a world's state through ten blocks of ticks, in MuJoCo alone."""
     data = mujoco.MjData(world.model)
     mujoco.mj_copyData(data, world.model, world.data)
     for _ in range(10 * _BLOCK):

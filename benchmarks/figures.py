@@ -1,4 +1,4 @@
-"""What benchmarks make of many measurements, and how they tell it."""
+"""Computes medians and percentiles of measurements, and prints the results of benchmarks."""
 
 import json
 import sys
@@ -13,13 +13,13 @@ class Row(NamedTuple):
     what: str
     measured: str
     baseline: str = ""
-    """What was measured beside it in the same run."""
+    """What the figure is compared with; it was measured in the same run."""
     ratio: str = ""
     aim: str = ""
 
 
 def percentile(values: Sequence[float], percent: int) -> float:
-    """Return the value that so many percent of the values do not exceed."""
+    """Return a percentile: the value that `percent` % of the values do not exceed."""
     return quantiles(values, n=100)[percent - 1] if len(values) > 1 else values[0]
 
 

@@ -1,4 +1,4 @@
-"""`python -m benchmarks.forks`: is a fork without a change the record, bit for bit?
+"""`python -m benchmarks.forks`: does a fork without a change equal its record, bit for bit?
 
 Plays short matches with bots, and forks half of them with a change, so that records with a
 referee's decisions are among them. Each record is then forked at some beats. The benchmark compares

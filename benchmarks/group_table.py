@@ -3,7 +3,7 @@
 python -m benchmarks.group_table --students 30 --groups 8 --seconds 60
 
 All students have a page's own connection and a table of their group. Each types a number every two
-seconds. An answer comes when the number is on the disk; the others have it before that.
+seconds. The sender gets an answer when the number is on the disk; the others get it earlier.
 """
 
 import asyncio
@@ -42,9 +42,9 @@ class Member:
         self._rng = random.Random(name)
         self._table: PageTable | None = None
         self.seen_ms: list[float] = []
-        """How long after it was sent each number of a partner came."""
+        """For each number of another member: time from its sending to its arrival here."""
         self.kept_ms: list[float] = []
-        """How long after it was sent each own number was on the disk."""
+        """For each own number: time from its sending until it was on the disk."""
 
     async def work(self, url: str, code: str, ends_s: float) -> None:
         """Come in, join the group, and type until the time is over."""

@@ -36,7 +36,7 @@ from lacoc_shared.seat import BEAT_S, Phase
 
 TURNS = 5
 AIM_MS = 1000 * BEAT_S + 10
-"""A page may take so much longer than the echo."""
+"""Most by which the time of a key on a page may exceed that of the echo [ms]."""
 _PING, _PONG = "lacoc/echo/ping", "lacoc/echo/pong"
 _FRAME_BYTES = 280
 _ZENOH = """{
@@ -223,7 +223,7 @@ def _websocket_echo() -> Iterator[str]:
 
 
 def _zenoh_echo() -> None:
-    """Answer every ping until the input ends, with Zenoh as it comes: no rules, one callback."""
+    """Answer every ping until the input ends, by plain Zenoh: no access rules, one callback."""
     with zenoh.open(zenoh.Config.from_json5(_ZENOH)) as session:
         pong = session.declare_publisher(_PONG)
 

@@ -28,7 +28,7 @@ _COLUMNS = ("what", "command", "figure", "machine, notes", "date")
 
 
 def page() -> str:
-    """Return the page that the data make."""
+    """Return the text of docs/measured.md, made from measured.toml."""
     lines = [_HEAD]
     for section in tomllib.loads(DATA.read_text(encoding="utf-8"))["section"]:
         lines += [f"## {section['title']}", _row(_COLUMNS), "|" + "---|" * len(_COLUMNS)]

@@ -6,8 +6,8 @@ had a chance of 70 %, about 70 % must have been won in the match itself. A momen
 each seat, because the chance of the other seat is the rest; a draw is half a win.
 
 Highlights (`--highlights`): in the first matches, every second of play has a moment with many
-forks. The highlights come from the first forks of each moment, the five largest swings between two
-moments from all the others. The highlights must contain at least 80 % of these.
+forks. The first forks of each moment give the highlights. All other forks give the five largest
+swings between two moments. The highlights must contain at least 80 % of these swings.
 
 By score (`--by-score`): plays whole matches, and asks each second for the chance by score and clock
 alone (client/web/src/core/chance.ts).
@@ -60,9 +60,9 @@ _GAMES: tuple[tuple[str, dict[str, Any]], ...] = (
 _BIN = 0.05
 _LARGEST = 5
 _OTHERS = 5
-"""Forks of each moment that give the largest swings."""
+"""How many forks of each moment give the largest swings; the others give the highlights."""
 _FIRST_S = 10
-"""From when pages tell a chance by score and clock."""
+"""Second of play from which pages show a chance by score and clock."""
 _LEAST = 0.05
 """Smaller changes of a chance are no swing, as in `lacoc replay highlights`."""
 

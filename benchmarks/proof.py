@@ -1,4 +1,4 @@
-"""Proves honest records here and with another arithmetic, and times it.
+"""Verifies honest records on this machine and with another arithmetic, and times this.
 
 python -m benchmarks.proof honest --matches 40 --seconds 180
 python -m benchmarks.proof time --seconds 180

@@ -1,4 +1,4 @@
-"""Streams matches to a video server, and reads back what it got: `python -m benchmarks.stream`.
+"""Streams matches to a video server, and reads its recording: `python -m benchmarks.stream`.
 
     python -m benchmarks.stream [--size 854x480] [--fps 30] [--seconds 300]
 
@@ -33,9 +33,10 @@ from lacoc_shared.seat import BEATS_PER_S, Phase
 _BOTS = {"left": "planner", "right": "nearest"}
 _BEGINS_S = 15.0
 _CLOCK = (slice(0.035, 0.085), slice(0.455, 0.545))
-"""Where the clock stands: parts of the picture's height and width."""
+"""Place of the match clock in a picture: from and to, as shares of the height and of the width."""
 _OTHER = 4.0
-"""Mean difference of two pictures of the clock that show another second."""
+"""If the pixels of two pictures of the clock differ by more than this on average, the second of one
+is not that of the other."""
 _NEAR_S = 2.0
 _AIM_S = 1.0
 _SERVER = """load_module /usr/lib/nginx/modules/ngx_rtmp_module.so;
@@ -98,7 +99,7 @@ def _watch(page: PageClient, end_s: float, changes_s: list[float]) -> None:
 
 
 def _play(referee: Any, end_s: float) -> None:
-    """Judge match after match."""
+    """Start and end match after match, as a referee does."""
     decide(referee, type="start")
     while time.time() < end_s:
         time.sleep(1)

@@ -38,7 +38,7 @@ KEYS = (1, 2, 3)
 LEFT, WALK, RIGHT = range(3)
 """What the learner chooses between: indices of `KEYS`."""
 BEATS = 72
-"""A sequence of the sample gait. If a turn is cut off, the robot turns the wrong way."""
+"""Beats in a step: one sequence of the sample gait. A turn that is cut off turns the wrong way."""
 SEATS = ("left", "right")
 EXAM = 100_000
 """Seed of the first opening of the test, far from those of the training."""
@@ -54,11 +54,13 @@ COURAGE = 1.0
 
 DISC_M = 0.12
 BESIDE_M = 0.35
-"""A disc's eight neighbours are nearer than this in x and y; the other robot bars discs so near."""
+"""A disc's eight neighbours are nearer than this in x and y. The teacher avoids discs that are so
+near to the other robot."""
 PASS_M = 0.42
 AHEAD_RAD, PASS_RAD = np.radians(40), np.radians(75)
 STRAY_RAD, NEAR_STRAY_RAD = np.radians(16), np.radians(45)
-"""At smaller bearings the robot walks: half a turn; more if the disc is nearer than `NEAR_M`."""
+"""At smaller bearings the robot walks. The first is half of what one sequence turns; the second is
+for discs nearer than `NEAR_M`."""
 NEAR_M = 0.10
 
 TURN, MIRROR = np.array([[0, -1], [1, 0]]), np.array([[1, 0], [0, -1]])
@@ -81,14 +83,14 @@ def environment() -> LacocEnv:
 
 @cache
 def discs_m() -> Seen:
-    """Return where the discs are: (discs, 2)."""
+    """Return the places of the discs on the floor: (discs, 2) [m]."""
     markers = environment().episode.match.sheet().markers
     return np.array([(disc.x_m, disc.y_m) for disc in markers], np.float32)
 
 
 @cache
 def columns() -> list[int]:
-    """Return where the numbers of `Seen` are in what an agent sees."""
+    """Return the indices of the numbers of `Seen` in the observation of an environment."""
     names = environment().names
     return [*map(names.index, PLACES), *range(len(names) - len(discs_m()), len(names))]
 
@@ -96,8 +98,8 @@ def columns() -> list[int]:
 def teach(seen: Seen) -> npt.NDArray[np.int64]:
     """Return for each row what the teacher would do there.
 
-    It goes to the nearest disc that is not its own and has an own disc beside it. If it stands on a
-    disc that is not its own, it first goes to an own one.
+    The teacher goes to the nearest disc that is not its own and has an own disc beside it. If it
+    stands on a disc that is not its own, it first goes to an own disc.
     """
     place, look, other, own = seen[:, :2], seen[:, 2:4], seen[:, 4:6], seen[:, 8:] > 0.9
     gaps = np.abs(discs_m()[:, None] - discs_m()).max(2)
@@ -166,7 +168,7 @@ class Learner:
 
     Args:
         hidden: numbers in each hidden layer.
-        seed: of its first weights, and of what it sees.
+        seed: seed of the first weights, and of the examples that are drawn by chance.
     """
 
     def __init__(self, hidden: tuple[int, int], seed: int) -> None:
@@ -188,7 +190,7 @@ class Learner:
         self._steps = 0
 
     def network(self) -> Network:
-        """Return the policy, which takes all that an agent sees."""
+        """Return the policy; its input is the whole observation of an environment."""
         parts = [part.astype(np.float64) for part in self._parts]
         weights, biases = parts[::2], parts[1::2]
         first = np.zeros((len(weights[0]), len(environment().names)))
@@ -199,7 +201,7 @@ class Learner:
         return Network(layers, KEYS, BEATS)
 
     def learn(self, seen: Seen, rate: float, examples: int = 20_000) -> float:
-        """Make examples of what was seen and learn from them; return the part that was right."""
+        """Make examples of what was seen and learn from them; return the share of right answers."""
         asked = self._imagine(seen[self._chance.integers(len(seen), size=examples)])
         said, right = teach(asked), 0
         asked *= self._scale
@@ -211,7 +213,7 @@ class Learner:
         return right / examples
 
     def _imagine(self, seen: Seen) -> Seen:
-        """Turn and mirror what was seen; in more than half of the rows look elsewhere too."""
+        """Turn and mirror what was seen; in most rows also change the robot's heading at random."""
         chance, rows = self._chance, len(seen)
         part, angle = chance.random(rows), chance.uniform(0, 2 * np.pi, rows)
         looks = np.stack([np.cos(angle), np.sin(angle)], 1)

@@ -37,7 +37,7 @@ class MatchSettings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
     """Settings that every game shares (rules 4); each can be set in the arena file."""
 
     duration_s: Seconds = 180.0
-    """Workshop 5-1 rule 2, 5-2 rule 1; 0: no time limit."""
+    """Length of a match (workshop 5-1 rule 2, 5-2 rule 1); 0: no time limit."""
     countdown_s: Seconds = 3.0
     """How long the countdown before every start and every resume is."""
     restart_freeze_s: Seconds = 5.0

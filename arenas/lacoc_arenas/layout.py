@@ -18,7 +18,7 @@ Point = tuple[
 
 
 def turned(place: Place) -> Place:
-    """Return where a place comes to lie when the field is turned by 180 degrees (rules 4)."""
+    """Return the place to which a place moves when the field is turned by 180 degrees (rules 4)."""
     heading_rad = math.remainder(place.heading_rad + math.pi, math.tau)
     return Place(0.0 - place.x_m, 0.0 - place.y_m, heading_rad)
 

@@ -25,7 +25,7 @@ class Route(NamedTuple):
 def best_route(
     start: Route, grow: Callable[[Route], Iterable[Route]], depth: int, width: int
 ) -> Route:
-    """Search for the route of the highest worth (a beam search); the shorter one wins a tie.
+    """Search for the route of the highest worth (a beam search), of equal ones the shortest.
 
     Args:
         start: the route without markers.

@@ -243,9 +243,9 @@ LIMITS: dict[str, float] = {
     "LARGEST": LARGEST,
     "DECIMALS": DECIMALS,
 }
-"""Of phrases that are put into words."""
+"""Limits for turning a phrase (code and values) into words, which pages must keep too."""
 _IMPORTS = {Phrase: "phrase"}
-"""Types that pages write themselves, with the module of core that has them."""
+"""Types that are written by hand in TypeScript, with their module in src/core."""
 _SIMPLE = {int: "number", float: "number", str: "string", bool: "boolean", bytes: "Uint8Array"}
 
 
@@ -281,7 +281,7 @@ def desk_types() -> str:
 
 
 def _head(core: str) -> list[str]:
-    """Return the first lines of a file; `core` is the relative path of the folder "core"."""
+    """Return the first lines of a written file; `core`: path from its folder to src/core."""
     imports = [f'import type {{ {k.__name__} }} from "{core}{m}";' for k, m in _IMPORTS.items()]
     return [
         "// Made by client/web/make_wire.py from the Python structs; not edited by hand.",

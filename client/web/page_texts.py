@@ -33,9 +33,10 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "office": ("office",),
     "leg": (),
 }
-"""By group of the pages' own messages: which files of phrases go with it."""
+"""Group of pages' messages -> the files of programs' phrases that a page loads with it."""
 SELDOM = ("forked", "gateway", "refused")
-"""Subjects that are said so seldom that a page loads their words only then."""
+"""First parts of codes ("gateway" in "gateway.fault"). Their texts are shown so seldom that a page
+loads them only when it needs one."""
 
 
 @cache

@@ -292,7 +292,7 @@ def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
 def _lifted(posture: Posture, labels: Sequence[str]) -> tuple[str, ...]:
     """Return the labels of the legs whose feet are higher than the lowest foot.
 
-    For this the body is taken to be level, and all links to be of one length.
+    This assumes that the body is level, and that all links have the same length.
     """
     legs = len(labels)
     # A positive 1st joint lifts the leg, and a positive 2nd joint swings the shank up (rules 1).

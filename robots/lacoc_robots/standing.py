@@ -21,7 +21,7 @@ FARTHEST_M = 0.05
 """In a match before play, the largest distance of a standing robot's centre from its start [m]."""
 FARTHEST_IN_TEST_M = 0.045
 """In a stand test, the largest distance of the robot's centre from its start [m]. It is smaller
-than in a match, because there a robot stands for longer, and at other places."""
+than in a match, because in a match a robot stands for longer, and at other places."""
 MOST_TILT_RAD = math.radians(30.0)
 """A robot that leans more than this counts as not upright [rad]."""
 REST_RAD_S = math.radians(0.2)

@@ -34,7 +34,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One mistake in a file, with its place."""
 
     file: str
-    """Name of the file by which the user calls it."""
+    """Name of the file, as the user knows it."""
     found: Phrase | str
     """What was found there; a text is quoted from the file."""
     expected: Phrase | str

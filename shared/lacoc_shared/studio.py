@@ -216,7 +216,7 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a map of gaits: one for each speed and arousal that the table can reach."""
+    """Ask for a map of gaits: one for each speed and arousal (how excited it looks)."""
 
     protocol: int
     job: str

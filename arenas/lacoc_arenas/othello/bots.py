@@ -18,8 +18,8 @@ _DEPTH, _BEAM = 7, 20
 _PATIENCE_S = 25.0
 """A disc gained this much later is worth 1 / e of a disc now, because plans often fail."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0
-"""If the other robot is this near to a disc, the disc is blocked, and going there is taken to need
-this much more time."""
+"""If the other robot is this near to a disc, the disc is blocked: the bot assumes that going there
+takes this much longer."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
@@ -72,7 +72,7 @@ class _Walker(ABC):
 class NearestDisc(_Walker):
     """Goes to the nearest disc that it can flip.
 
-    If there is none, to an own disc beside such a disc.
+    If there is none, it goes to the nearest own disc from which it can flip a disc beside it.
     """
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:

@@ -1,4 +1,4 @@
-"""Finds the way to courts: from a link, or from the address of a court that was started alone."""
+"""Finds how to reach courts: from a link, or from the address of a court that was started alone."""
 
 from pathlib import Path
 
@@ -24,13 +24,13 @@ def courts(
     token: str | None = None,
     authority: Path | None = None,
 ) -> dict[str, Access]:
-    """Find the ways to all courts of a link, or to the named court, each with this user's token.
+    """Find how to reach all courts of a link, or the named court, each with this user's token.
 
     Args:
         link: a link, or the address of pages.
-        court: the court's name; None: the court that the link names counts, if it names one.
-        connect: address of a court, used without a link; several, with commas: the court is at one
-            of them.
+        court: the court's name; None: the court that the link names, if it names a court.
+        connect: address of a court, used without a link; or several addresses with commas, if the
+            court is at one of these.
         token: the token, used without a link.
         authority: file with the certificate of a private authority, used without a link.
 
@@ -49,7 +49,7 @@ def courts(
 
 
 def reached(found: FoundEvent, court: str | None) -> dict[str, Access]:
-    """Return the ways to all courts of an event that a link led to, or to the named court only.
+    """Return how to reach all courts of an event that a link led to, or the named court only.
 
     Raises:
         UserError: if the event has no such court, or none that a command can reach.
@@ -73,7 +73,7 @@ def reached(found: FoundEvent, court: str | None) -> dict[str, Access]:
 def one_court(
     link: str | None, court: str | None, connect: str | None, token: str | None = None
 ) -> Access:
-    """Find the way to one court; arguments as in `courts`.
+    """Find how to reach one court; arguments as in `courts`.
 
     Raises:
         UserError: if a link leads to several courts and none is named; also for the reasons of
@@ -86,7 +86,7 @@ def one_court(
 
 
 def referee(link: str | None, court: str | None, connect: str | None, token: str | None) -> Access:
-    """Find the way of a referee to a court; arguments as in `courts`.
+    """Find how a referee reaches a court; arguments as in `courts`.
 
     Raises:
         UserError: if there is no token; also for the reasons of `one_court`.
@@ -101,7 +101,7 @@ def contestant(
     token: str | None,
     authority: Path | None = None,
 ) -> Access:
-    """Find the way of a contestant or a bot to any court of the event.
+    """Find how a contestant or a bot reaches any court of the event.
 
     That court then says where the seat is.
 

@@ -153,7 +153,7 @@ def follow(
     """Play at the terminal, at each court to which the token's team is called.
 
     Args:
-        access: the way to any court of the event, with the token.
+        access: how to reach any court of the event, and the token.
         any_court: whether any court of the event may be asked, because nobody named one.
         name: name of the team, for an open seat; "": a name made of the seat.
         bring: returns the files of the team, for an open seat.

@@ -69,7 +69,7 @@ def _greeting(files: SeatFiles) -> Text:
 def _court(folder: Path, recordings: Path) -> Iterator[Access]:
     """Run a court with the practice arena in a process of its own, until the block ends.
 
-    Yield the way to it.
+    Yield its address, with seat and token.
     """
     # Fresh: a practice begins anew, even if a killed court left a match in the folder.
     words = ["serve", "--json", "--fresh", "--arena", "practice", "--listen", "tcp/127.0.0.1:0"]

@@ -464,7 +464,7 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
 def _history(view: Spectator) -> tuple[Event, ...]:
     """Return all events of the match so far, in order.
 
-    Wait for them, as they come after the connection.
+    Wait for them, because they arrive a moment after the connection was opened.
     """
     now_s = time.monotonic()
     deadline_s, quiet_since_s = now_s + _HISTORY_S, now_s

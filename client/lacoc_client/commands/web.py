@@ -194,7 +194,7 @@ def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> 
 def _told(plan: ContestFile, court: str, host: str) -> tuple[str, ...]:
     """Return the addresses at which others reach a court.
 
-    None if only its own machine can reach it.
+    Return no address if only the court's own machine can reach it.
 
     Args:
         plan: the contest file.

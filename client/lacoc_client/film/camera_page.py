@@ -1,4 +1,4 @@
-"""The page /film in a Chromium of its own: it is told a beat, and its picture is taken."""
+"""Opens the page /film in its own Chromium, lets it show a beat, and takes its picture."""
 
 import base64
 import os

@@ -25,7 +25,7 @@ FLAGS = (
 """Options with which Chromium draws without a graphics card."""
 
 SHELL = "chromium-headless-shell"
-"""Name of a Chromium without the code for windows: in it pages take two thirds of the time."""
+"""Name of a Chromium without the code for windows; it draws pages in two thirds of the time."""
 _NAMES = (
     SHELL,
     "chromium",

@@ -19,9 +19,9 @@ from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S
 
 HIGHLIGHTS = 5
-"""How many moments the highlights of a match have."""
+"""How many moments a film of a match's highlights shows."""
 REEL = 2
-"""How many moments a reel has of each match."""
+"""How many moments of each match a reel shows; a reel is a film of several matches."""
 _AFTER_BEATS = BEATS_PER_S // 2
 """How long after the match's largest moment its still is taken [beats]."""
 
@@ -53,7 +53,7 @@ class FilmPart:
 
         Args:
             first: the first beat that may be shown.
-            last: the last one.
+            last: the last beat that may be shown.
         """
         if self.count is None:
             return plan.whole(first, last)
@@ -147,9 +147,9 @@ def _add(
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures that lead to a still: of the time just before its beat, and of the beat.
+    """Return the pictures for a still: those of the time just before its beat, and of the beat.
 
-    During this time the automatic camera moves to where it must be at the beat.
+    The earlier pictures let the automatic camera move to where it must be at the beat.
 
     Args:
         beat: the beat of the still.

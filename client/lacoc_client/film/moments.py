@@ -36,7 +36,7 @@ class _MomentsFile(msgspec.Struct):
 def largest(moments: Iterable[Moment], count: int) -> list[Moment]:
     """Return the `count` moments with the largest swings, in the order of time.
 
-    Earlier ones win a tie.
+    Of moments with equal swings the earlier ones are chosen.
     """
     ranked = sorted(moments, key=lambda moment: (-moment.swing, moment.beat))
     return sorted(ranked[:count], key=lambda moment: moment.beat)
@@ -55,7 +55,7 @@ def by_score(record: Record) -> list[Moment]:
 
 
 def played(record: Record) -> list[int]:
-    """Return the beats of a record's frames of play, in order.
+    """Return the beats of all frames in which a recorded match was in play, in order.
 
     Raises:
         UserError: if a frame of the record can't be read.

@@ -29,7 +29,7 @@ class Picture:
     """One picture of a film."""
 
     beat: float
-    """Beat of the match; a fraction is between two beats."""
+    """Beat of the match; a number that is not whole lies between two beats."""
     cut: bool
     """Whether this picture begins a new shot."""
 

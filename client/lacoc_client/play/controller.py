@@ -46,9 +46,9 @@ _Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 _REJOIN_TIMEOUT_S = 1.0
 _REMEMBERED = 64
 _REPEATED_BEATS = FRESH_BEATS - BEATS_PER_S
-"""If the player sees the frames elsewhere, a repeated command names only a frame of at most this
-age [beats]. The rest of the time until the court calls a frame old is left for the way to the
-court."""
+"""For a player who sees the frames elsewhere, such as on a page: greatest age of a frame that a
+repeated command names [beats]. The court accepts frames that are a second older, so the command has
+time to arrive."""
 _WHY = {int(no): why for no, why in WHY_NO.items()}
 
 
@@ -176,7 +176,7 @@ class Controller:
         """Sequence number, level and key of the command that is repeated now."""
         self._elsewhere = elsewhere
         self._seen: SeenFrame | None = None
-        """The newest frame that a player who sees the frames elsewhere saw in this session."""
+        """The newest frame that the player saw in this session, as given to `saw` or `press`."""
         self._sent_s = 0.0
         self._pressed: dict[int, _PressedKey] = {}
         self._refused: list[RefusedKey] = []
@@ -298,7 +298,7 @@ class Controller:
         return lambda: ask(self._session, self._keys, key, request, TryOutReply)
 
     def saw(self, frame: SeenFrame) -> None:
-        """Tell the court that the player still sees frames; for a player who sees them elsewhere.
+        """Tell the court that the player still sees frames, for a player who sees them on a page.
 
         Args:
             frame: the frame that the player saw.
@@ -413,7 +413,7 @@ class Controller:
         return key, msgspec.structs.replace(request, mac=mac)
 
     def _note(self, frame: SeenFrame) -> None:
-        """Remember the newest frame that a player elsewhere saw."""
+        """Remember the newest frame that the player saw elsewhere, such as on a page."""
         self._seen = max(self._seen or frame, frame)
 
     def _newest(self) -> SeenFrame | None:

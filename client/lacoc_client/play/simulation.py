@@ -32,7 +32,7 @@ class OutputLine(msgspec.Struct, frozen=True, tag_field="kind"):
 
 
 class LeftOutLine(OutputLine, frozen=True, tag="left-out"):
-    """A line: this player can't play, for this reason or because of these mistakes."""
+    """A line that says which player can't play, and for which reason or mistakes."""
 
     player: str
     mistakes: tuple[Mistake, ...]
@@ -40,7 +40,7 @@ class LeftOutLine(OutputLine, frozen=True, tag="left-out"):
 
 
 class BeginLine(OutputLine, frozen=True, tag="begin"):
-    """A line: so many matches begin now."""
+    """A line that says how many matches begin now."""
 
     matches: int
 
@@ -53,7 +53,7 @@ class MatchResult(msgspec.Struct, frozen=True):
 
 
 class MatchLine(OutputLine, frozen=True, tag="match"):
-    """A line: a match has ended."""
+    """A line that says that a match has ended, and how."""
 
     players: tuple[str, str]
     winner: int | None
@@ -62,7 +62,7 @@ class MatchLine(OutputLine, frozen=True, tag="match"):
 
 
 class StandingsLine(OutputLine, frozen=True, tag="standings"):
-    """A line: the standings after a match."""
+    """A line with the standings after a match."""
 
     done: int
     standings: tuple[PlayerStanding, ...]

@@ -249,11 +249,11 @@ class _Lacking:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
     def forget(self) -> None:
-        """Drop the open request, because the message came by itself."""
+        """Drop the open request, because the message has arrived without it."""
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer when it has come, only once; None before and after this."""
+        """Return the answer once it has arrived; None before that, and after it was returned."""
         if self._question is None:
             return None
         try:

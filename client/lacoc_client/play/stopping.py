@@ -9,10 +9,10 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")  # Ctrl-C, kill, a closed window
 
 @contextmanager
 def stop_signals() -> Iterator[Callable[[], bool]]:
-    """Catch the signals that ask the program to end; give a function that says if one came.
+    """Catch the signals that ask the program to end.
 
-    Signals are caught until the block ends, or until the first one has come: a second signal ends
-    the program as usual.
+    Yield a function that returns whether such a signal has arrived. Signals are caught until the
+    block ends, or until the first signal has arrived: a second one ends the program as usual.
     """
     asked: list[int] = []
     numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]

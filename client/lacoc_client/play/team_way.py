@@ -22,7 +22,7 @@ moment, the second otherwise."""
 _LATER_FROM_S = 30
 _GONE_S = 5.0
 _OUT_S = 20.0
-"""For how long a team that plays no more goes on asking a court that does not answer [s]."""
+"""How long a team whose matches are all played still asks a court that does not answer [s]."""
 
 
 def where(session: Session, court: str, token: str) -> Whereabouts:
@@ -46,7 +46,7 @@ class TeamWay:
     """Leads a team to its seat, and from court to court; used as a context manager.
 
     Args:
-        access: the way to any court of the event, with the token.
+        access: how to reach any court of the event, and the token.
         any_court: whether nobody named a court; then any court at the address is asked.
         patience: how long to wait for the first answer.
         tell: called with a sentence about what comes next for the team, whenever it changes.
@@ -136,7 +136,7 @@ class TeamWay:
         self._look()
 
     def access(self, there: Whereabouts) -> Access:
-        """Return the way to the seat to which the team was called."""
+        """Return address, seat and token with which the team joins where it was called."""
         own = self._access
         if there.address:
             own = Access(court=there.court, connect=there.address, authority=own.authority)
@@ -165,7 +165,7 @@ class TeamWay:
             raise
 
     def _court_there(self, court: str) -> str:
-        """Return the court to ask: the given one; if nobody named it, perhaps another one there."""
+        """Return the court to ask: the given one, or another if it is gone and nobody named it."""
         if not self._any_court:
             return court
         there = [key.split("/")[1] for key in self._session.present(EVERY_COURT)]

@@ -1,1 +1,1 @@
-"""Pages for learning: designing a gait alone (/design), in a class, and the six phases of both."""
+"""Pages for learning: to design a gait (/design), alone or in a class, in six phases."""

@@ -97,7 +97,7 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _blank(match: re.Match[str]) -> str:
-    """Return the text that takes the place of a comment or a string: as many line ends."""
+    """Return a text without words in place of a comment or a string, with as many line ends."""
     return " " + "\n" * match[0].count("\n")
 
 

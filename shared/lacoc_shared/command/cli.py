@@ -1,7 +1,7 @@
 """The command `lacoc`.
 
 Subcommands are the entries of an entry-point group. Each is imported only when it is called;
-`listing` has what the help says of LACOC's own. So a contestant's machine needs no package that
+`listing` has the help's lines about those of LACOC. So a contestant's machine needs no package that
 only a court needs, a third party adds a command by installing a package, and `lacoc --version` is
 quick.
 

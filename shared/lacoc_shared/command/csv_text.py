@@ -5,8 +5,8 @@ import io
 from collections.abc import Iterable, Sequence
 
 _FORMULA = (*"=+-@＝＋－＠", "\t", "\r")
-"""Spreadsheet programs calculate a text that begins with one of these signs; in Japanese also with
-a wide one."""
+"""Spreadsheet programs calculate a text that begins with one of these signs. In Japanese they also
+do so for the full-width signs."""
 
 
 def csv_text(rows: Iterable[Sequence[object]]) -> bytes:

@@ -32,7 +32,7 @@ _TEXT = "_make_rich_text"
 _ERROR = "rich_format_error"
 """Name of the function in `rich_utils` that shows a mistake in the use of a command."""
 _english: dict[str, Any] = {}
-"""The original values of these names in `rich_utils`; empty until they are first replaced."""
+"""The original values of all names in `rich_utils` that this module replaces; at first empty."""
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Tables with what the help says of commands, so that it need not import them.
+"""Tables with what the help says of commands, so that the help need not import the commands.
 
 Importing all commands takes a second. So their first sentences are here, and a test compares them
 with the commands. The tables also say which commands need packages that may not be installed.

@@ -1,6 +1,6 @@
 """Options that several commands share, with the same name, environment variable and help in each.
 
-If an option and its variable are both set, the option counts: typer's `envvar` does this.
+If an option and its variable are both set, the option is used: typer's `envvar` does this.
 """
 
 from pathlib import Path

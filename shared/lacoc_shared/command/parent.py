@@ -9,7 +9,7 @@ import signal
 import threading
 
 VARIABLE = "LACOC_PARENT"
-"""Environment variable. If it is set, the standard input of this process is such a pipe."""
+"""Environment variable. If it is set, this process's standard input is a pipe from its parent."""
 
 
 _followed = threading.Event()

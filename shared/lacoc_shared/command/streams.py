@@ -53,7 +53,7 @@ def drop_output() -> None:
 
 
 class _Output(io.FileIO):
-    """Standard output; a failed write raises `OutputFailed`, and not the error of any file."""
+    """Standard output; a failed write raises `OutputFailed`, which no other file raises."""
 
     def write(self, data: "ReadableBuffer", /) -> int:
         try:

@@ -1,4 +1,4 @@
-"""A client's way to a court: the court's addresses and certificate, and the client's own token."""
+"""How a client reaches a court: the court's addresses and certificate, and the client's token."""
 
 from typing import Self
 

@@ -117,7 +117,7 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
     Args:
         name: the court's name.
         table: the court's table in the file.
-        number: its index among the courts; a court without `listen` gets a port by it.
+        number: its index among the courts, which chooses the port of a court without `listen`.
         folder: the contest file's folder.
         protocol: protocol of addresses that name none: "tls" in a contest with a certificate.
 
@@ -202,6 +202,6 @@ def beside(folder: Path, name: str) -> str:
 
 
 def _any_host(address: str) -> str:
-    """Return the address of an address's port at all addresses of a machine."""
+    """Return an address with the same protocol and port, but for all addresses of a machine."""
     protocol, port = address.partition("/")[0], address.rpartition(":")[2]
     return f"{protocol}/{ANY_HOST[0]}:{port}"

@@ -73,10 +73,10 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def own_host(self) -> str:
-        """Host of this machine for others: with a certificate, that of the pages' address.
+        """Host name or address by which others reach this machine.
 
-        A public certificate is for this name, and not for an IP address. Otherwise the host is this
-        machine's IP address.
+        With a certificate it is the host of the pages' address, because a public certificate is for
+        this name. Without a certificate it is this machine's IP address.
         """
         return (self.public.host if self.public.pair else "") or own_address()
 
@@ -112,7 +112,7 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
         return name, self.courts[name]
 
     def access(self, court: str) -> Access:
-        """Return the way to a court for a program on the office's machine.
+        """Return how a program on the office's machine reaches a court.
 
         Raises:
             UserError: if the authority's certificate can't be read.
@@ -152,7 +152,7 @@ def picture_path(sheet: Path, files: str) -> Path | None:
 
 
 def facts_path(path: Path) -> Path:
-    """Return the path of the database with a contest's facts, beside the contest file."""
+    """Return the path of the database with what happened in a contest, beside the contest file."""
     return path.resolve().with_suffix(".db")
 
 

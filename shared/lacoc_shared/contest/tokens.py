@@ -31,6 +31,6 @@ def lasting_hash(token: str) -> str:
 def digest(token: str) -> bytes:
     """Return a digest of a token, by which the token is found among others.
 
-    The time for comparing digests gives nothing of the token away.
+    The time that it takes to compare digests reveals nothing about the token.
     """
     return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -512,7 +512,7 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     worst_late_ms: float
     seats: tuple[SeatHealth, ...]
     dropped: dict[str, int]
-    """Number of messages that are of no seat, by reason: a name of `count.*`."""
+    """Number of refused messages that belong to no seat, by reason: a name of `count.*`."""
     decisions: dict[str, Phrase | None]
     """Every decision by name: None if it is legal now, else why not (`why.*`)."""
     verdict: HealthVerdict | None = None

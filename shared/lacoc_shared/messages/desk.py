@@ -147,8 +147,8 @@ class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):
     """The teams in the order of their seeding, as the page shows them; for "hand" in the order that
     the organiser wants. If the office would now draw other teams, nothing is drawn."""
     how: Literal["", "hand", "lot"] = ""
-    """How the seeding is made, as in the fact `drawn`: by the ranking before, by hand with a
-    reason, or by lot."""
+    """How the seeding is made. "": by the ranking before. hand: by the organiser, with a reason.
+    lot: by lot."""
     lot: _Name = ""
     """For "lot": the lot, which was drawn in front of everybody."""
     reason: _Text = ""
@@ -415,7 +415,7 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
     met: tuple[tuple[str, str], ...] = ()
     """Pairs of teams of this stage that met in the stage before."""
     apart: tuple[str, ...] = ()
-    """An order of the teams in which fewer of these pairs meet again; empty: there is no better
+    """An order of the teams in which fewer pairs of `met` meet again; empty: there is no better
     order."""
 
 

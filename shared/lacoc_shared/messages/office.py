@@ -220,7 +220,7 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
 class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A request of the office: here is where all teams and open seats are.
 
-    It replaces the earlier one.
+    It replaces what the office told before.
     """
 
     teams: dict[TokenHash, Whereabouts]

@@ -92,7 +92,7 @@ def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
 
 
 def why_not_connected(endpoints: Sequence[str], authority: str = "") -> Phrase:
-    """Return why no connection to these addresses could be opened, in one sentence for each.
+    """Return why no connection could be opened, in one sentence for each of these addresses.
 
     Args:
         endpoints: complete addresses.

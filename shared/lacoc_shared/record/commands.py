@@ -176,7 +176,7 @@ def _summary(record: Record) -> dict[str, Any]:
 def _keys(record: Record, seat: int) -> dict[str, int]:
     """Count a seat's key presses, and those of them that took effect late.
 
-    Also find the longest time for which the court held one back, to make both links equal [beats].
+    Also find the longest time for which the court held a key back, to make links equal [beats].
     """
     inputs = (item for items in record.inputs.values() for item in items)
     keys = [item for item in inputs if isinstance(item, KeySeat) and item.seat == seat]

@@ -13,7 +13,7 @@ from lacoc_shared.words import Phrase, say
 
 
 def in_earlier_words(recorded: Sequence[Event], again: Sequence[Event]) -> tuple[Event, ...]:
-    """Return events with earlier sentences where the recorded events have earlier ones.
+    """Return the replay's events; where the record has the older form of a sentence, use that form.
 
     Args:
         recorded: the events of the record.

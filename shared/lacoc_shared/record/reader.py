@@ -253,7 +253,7 @@ class Record:
         self._forget_from(header.first_beat)
 
     def _forget_from(self, beat: int) -> None:
-        """Drop the messages of this beat and of later ones, which a new segment begins with again.
+        """Drop the messages of this beat and of later beats: a new segment has them again.
 
         See `Header.first_beat`.
         """

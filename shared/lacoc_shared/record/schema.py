@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase
 
 
 class ForkSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """Who steers a robot in a fork's own beats; without bot and script, the recorded keys do."""
+    """Who steers a robot in a fork's own beats: a bot, a script, or else the recorded keys."""
 
     seat: str
     """Id of the seat."""
@@ -47,7 +47,7 @@ class Origin(msgspec.Struct, frozen=True, kw_only=True):
     match_id: str
     """Id of that match; it may be a fork too."""
     beat: int
-    """First beat that the fork plays itself; it has all earlier beats from the other match."""
+    """First beat that the fork plays itself; its earlier beats are those of the other match."""
     record_hash: str
     """Hash of the messages in that match's record, hexadecimal."""
     changes: ForkChanges | None = None
@@ -68,8 +68,8 @@ class Setup(msgspec.Struct, frozen=True, kw_only=True):
     limits: dict[str, float]
     """Contest limits for robots (rules 1) that differ from the defaults."""
     assigned: Assigned | None = None
-    """What the office assigned, or a court that was started alone; None: not known, because the
-    record is older."""
+    """What was assigned: by the office, or by the court itself if it was started alone. None: not
+    known, because the record is older."""
     origin: Origin | None = None
     """The origin, if the match is a fork; None: it was played from its first beat on."""
 

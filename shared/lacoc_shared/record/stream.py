@@ -75,8 +75,8 @@ damaged. A program that counts all beats up to such a time would never end."""
 TakeBytes = Callable[[str, int, bytes], None]
 """Called with a message's topic, beat and bytes."""
 Take = Callable[[str, int, bytes, Any], None]
-"""Called with topic, beat, bytes and the decoded message; for a snapshot with the bytes in its
-place."""
+"""Called with topic, beat, bytes and the decoded message; for a snapshot the bytes take the place
+of the message."""
 
 
 class Stop(NamedTuple):
@@ -258,9 +258,9 @@ class _Found(NamedTuple):
     """An MCAP record, perhaps in a chunk."""
 
     at: int
-    """Byte of the file at which it begins, or its chunk."""
+    """Byte of the file at which the record begins, or the chunk that contains it."""
     end: int
-    """Byte of the file at which it ends, or its chunk."""
+    """Byte of the file at which the record ends, or the chunk that contains it."""
     opcode: int
     source: bytes
     """The file, or the unpacked chunk."""
@@ -271,7 +271,7 @@ class _Found(NamedTuple):
 
 
 def _records(data: bytes) -> Iterator[_Found]:
-    """Yield the MCAP records of a file, also those in its chunks, up to the limit for a match.
+    """Yield the MCAP records of a file, also those in its chunks, up to the size limit of a match.
 
     Raises:
         McapError: if a chunk is too large, or has a compression that LACOC does not use. If the

@@ -68,7 +68,7 @@ def read(file: Traversable) -> Mapping[str, Wording]:
 def faults(phrase: Phrase) -> list[str]:
     """List how a phrase differs from its entry in the table.
 
-    Tests check with it what programs say.
+    Tests use it to check the phrases that programs send.
     """
     return list(_faults(phrase))
 

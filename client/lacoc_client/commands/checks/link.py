@@ -24,7 +24,7 @@ def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[F
     """Check the link to a court, as a spectator sees it.
 
     Args:
-        access: the way to the court.
+        access: how to reach the court.
         seconds: how long the court's frames are counted.
         planned: whether the court stands in a contest file; then it need not run yet.
     """
@@ -90,8 +90,8 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
 def _frames(view: Spectator, seconds: float) -> Finding:
     """Measure how many frames a second arrive, and the longest gap between two of them.
 
-    A frame counts as lost if a newer one replaced it before it was read. A repeated frame does not
-    count: a court that can't go on sends its last one again.
+    A frame counts as lost if a newer frame replaced it before it was read. A frame that is sent
+    again is not counted: a court that can't go on sends its last frame again and again.
     """
     about = say("doctor.frames", court=view.keys.court)
     first = view.wait_frame(_FIRST_S)

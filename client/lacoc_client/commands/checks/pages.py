@@ -26,8 +26,8 @@ _SOON_DAYS = 14.0
 _DAY_S = 86_400.0
 _HOUR_S = 3600.0
 _CADDY = "Caddy Local Authority"
-"""The name of the authority that Caddy makes for itself begins so. Its certificates last for
-hours."""
+"""First words of the name of the authority that Caddy makes for itself. Certificates of this
+authority are valid for hours only."""
 
 
 class _PageAnswer(NamedTuple):

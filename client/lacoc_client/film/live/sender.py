@@ -40,7 +40,7 @@ class Sender:
         target: where the stream goes.
         size: width and height of a picture [px].
         fps: pictures a second.
-        tell: called on the sender's thread with a sentence when the server goes or comes back.
+        tell: called on the sender's thread with a sentence when the server is lost, or is back.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Sender:
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Drop all pictures that come in a time [s]."""
+        """Drop all pictures that arrive in the next `seconds`."""
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
             self.left_out += self._next() is not None

@@ -19,7 +19,8 @@ from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import Phrase, say
 
 _HELD_S = 0.4
-"""How long a picture waits until all sounds of its time are known [s]."""
+"""A picture is sent this much later than it is due [s]; by then all sounds of its time are known.
+"""
 _SOUNDS_S = 0.1
 """Time between two requests to the page for new sounds [s]."""
 _TOLD_S = 10.0
@@ -115,7 +116,7 @@ class _Streaming:
     def _picture(self, page: Page, shots: Shots) -> None:
         """Wait for the time of the next picture and take it.
 
-        Send those that have waited for their sounds.
+        Also send the earlier pictures that have waited `_HELD_S` for their sounds.
         """
         wait_s = self._pace.wait_s(time.monotonic())
         if wait_s > _SLEPT_MOST_S:
@@ -169,7 +170,7 @@ def stream(
         look: its language and size.
         fps: pictures a second.
         stopping: called for each picture.
-        tell: called from any thread with a sentence when something goes or comes back.
+        tell: called from any thread with a sentence when the page or a server is lost, or is back.
         report: called every 10 s.
 
     Raises:

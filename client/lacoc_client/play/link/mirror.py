@@ -18,7 +18,7 @@ _EVERY_S = 2.0
 _WAIT_S = 10.0
 _MOST_BYTES = 16 << 20
 _PICTURE_BYTES = 256 << 10
-"""A picture of a team is copied only up to this length; usual ones have some ten kilobytes."""
+"""A team's picture is not copied if it is longer than this; a usual picture has some 10 kB."""
 
 
 class _TeamOfSheet(msgspec.Struct, frozen=True):

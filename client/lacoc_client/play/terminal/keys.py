@@ -52,7 +52,7 @@ class KeySource(Protocol):
 
         Args:
             timeout_s: longest wait [s].
-            playing_s: how long the match has been played [s]; a script's times are counted in it.
+            playing_s: how long the match has been played [s]; the times in a script refer to it.
             playing: whether the match is being played.
         """
 

@@ -6,7 +6,7 @@ from lacoc_client.web.director.moments import LiveMoment
 from lacoc_client.web.director.plan import LEAST_S
 
 ASIDE_SHARE = 0.12
-"""Only the best moments are good enough for the second picture: this share of all."""
+"""Share of all moments that are good enough for the second picture: the best ones."""
 ASIDE_WHYS = ("swing", "lead")
 """Only moments of these kinds are shown: when a match begins or ends, there is nothing to see at
 once."""

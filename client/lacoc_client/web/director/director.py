@@ -113,7 +113,7 @@ class Director:
             self._moments.popleft()
 
     def _coming(self, shown_s: float) -> list[LiveMoment]:
-        """Return the moments of all courts that are not over yet."""
+        """Return the moments at all courts, without moments that are over."""
         return [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
 
     def _next(

@@ -22,9 +22,9 @@ _LOOKED_AT = 0.15
 _KNOWN_LEAST = 20
 """While fewer moments than this are known, `_AT_FIRST` is used instead of them."""
 _AT_FIRST = 6.0
-"""Assumed points of the worst moment of the best tenth."""
+"""While too few moments are known: the assumed points of the worst of the best 10 % of moments."""
 _MOST = 8
-"""Most coming moments that are compared."""
+"""How many coming moments are compared at most."""
 
 
 def cuts_left(cuts: Sequence[float], at_s: float) -> int:
@@ -68,7 +68,7 @@ class Prices:
         return self._costs[left - 1]
 
     def least(self, share: float) -> float:
-        """Return the points of the worst of the best moments; these are a share of all."""
+        """Return the points of the worst moment in the best `share` (0 to 1) of all moments."""
         if len(self._sorted) < _KNOWN_LEAST:
             return _AT_FIRST * math.sqrt(0.1 / share)
         return self._sorted[max(0, int(len(self._sorted) * share) - 1)]
@@ -99,7 +99,7 @@ def is_worth_it(
     ahead = sorted(one for one in best if prices.value(one))
 
     def way(index: int, court: str, cuts: tuple[float, ...]) -> float:
-        """Return the largest gain from `ahead[index]` on, with `court` on air after these cuts.
+        """Return the largest gain from moment `ahead[index]` on, with `court` on air before it.
 
         The gain is the worth of all moments that are shown, less the costs of the cuts to them.
         """

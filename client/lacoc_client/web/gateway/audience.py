@@ -15,7 +15,7 @@ class Listener(Protocol):
         """Take a message that may be left out."""
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """Take a frame that came at a time [s]."""
+        """Take a frame that arrived at the time `now_s` [s]."""
 
 
 class Audience:

@@ -32,7 +32,7 @@ class _ProgrammeHead(msgspec.Struct):
 
 
 class Backlog:
-    """Keeps those messages sent to pages that a page needs which comes now."""
+    """Keeps, of all messages that were sent to pages, those that a new page needs."""
 
     def __init__(self) -> None:
         self._newest: dict[MessageKind, bytes] = {}

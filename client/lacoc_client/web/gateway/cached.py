@@ -48,7 +48,7 @@ def json_response(request: Request, found: Any) -> Response:
 
 
 def large_response(request: Request, path: Path, media_type: str, cache: str) -> Response:
-    """Answer with a file that is too large for this program's memory; else as `file_response`.
+    """Answer as `file_response` does, with a file that is too large for this program's memory.
 
     Raises:
         OSError: if the file has gone.

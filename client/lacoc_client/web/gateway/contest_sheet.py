@@ -23,7 +23,7 @@ class SheetMatch(msgspec.Struct, frozen=True):
 
 
 class SheetStage(msgspec.Struct, frozen=True):
-    """A stage that was drawn."""
+    """A stage of the contest whose draw has been made."""
 
     matches: tuple[SheetMatch, ...] = ()
 

@@ -1,4 +1,4 @@
-"""The courts of a gateway, and the limits on how many pages may come."""
+"""The courts of a gateway, and the limits on how many pages may connect."""
 
 import asyncio
 import hmac
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 _THREADS = 16
 _FILES_S = 0.5
 _STRANGERS = 4
-"""Number of threads that show courts tokens that no court has accepted yet. Decisions and other
-requests run on other threads, so they never wait for these."""
+"""Number of threads that ask courts about unknown tokens: those that no court has accepted yet.
+Decisions and other requests run on other threads, so they never wait for these."""
 
 
 class Courts:
@@ -41,7 +41,7 @@ class Courts:
         self.threads = Threads(_THREADS)
         """Threads for requests to courts."""
         self.strangers = Threads(_STRANGERS)
-        """Threads that show courts tokens that no court has accepted yet."""
+        """Threads that ask courts about unknown tokens: those that no court has accepted yet."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
         self._programme: Programme | None = None
         self.claiming: set[Viewer] = set()
@@ -53,11 +53,11 @@ class Courts:
         self._accepted: set[bytes] = set()
         """Digests of the tokens that a court has accepted."""
         self.sent_away = 0
-        """Number of pages that were refused for lack of room; pages that only watch can go on in
-        pieces."""
+        """Number of pages that were refused for lack of room. Pages that only watch can then fetch
+        the match in pieces of a second."""
         self.pieces_asked = 0
-        """Number of requests for pieces that reached this gateway; caches on the way answered the
-        others."""
+        """Number of requests for pieces (a second of a match) that reached this gateway; caches on
+        the way answered the others."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
         """Return the started feed and the referees of a court; without a name, of the first court.

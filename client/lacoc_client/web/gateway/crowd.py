@@ -13,10 +13,10 @@ SYMBOLS = 4
 CHEERS_HZ = 1.0
 """How many cheers of a page count in a second."""
 LOOKS_S = 10
-"""A page that watches in pieces reports every so many seconds that it is there; of a very large
-crowd only a share of the pages does."""
+"""A page that fetches a match in pieces reports this often that it is there [s]. Of a very large
+crowd only a share of the pages reports."""
 HEARD_MOST = 200
-"""How many such reports are wanted in `LOOKS_S`: in a larger crowd only a share of the pages
+"""How many reports of pages are wanted in `LOOKS_S`: in a larger crowd only a share of the pages
 reports."""
 _SAYS_S = 1.0
 _SAYS_AGAIN = 5
@@ -34,9 +34,9 @@ class Crowd:
         self._cheers: dict[Audience, Counter[int]] = {}
         self._told: dict[Audience, bytes] = {}
         self._heard: deque[float] = deque([0.0] * LOOKS_S, LOOKS_S)
-        """For each of the last seconds, how many pages in pieces its reports stand for."""
+        """For each of the last seconds: how many pages the reports of that second stand for."""
         self.share = 1.0
-        """The share of the pages in pieces that is asked to report, 0 to 1."""
+        """Which share of the pages that fetch pieces is asked to report, 0 to 1."""
 
     def cheer(self, audience: Audience, symbol: int, count: float = 1) -> None:
         """Count a cheer of somebody who watches a court; do nothing if cheers are switched off."""
@@ -44,9 +44,9 @@ class Crowd:
             self._cheers.setdefault(audience, Counter())[symbol] += round(count)
 
     def hear(self, audience: Audience, cheers: list[int]) -> None:
-        """Count the report of a page in pieces.
+        """Count the report of a page that fetches the match in pieces.
 
-        It stands also for pages that were not asked to report.
+        The report also stands for pages that were not asked to report.
 
         Args:
             audience: the pages that watch the same court.
@@ -58,7 +58,7 @@ class Crowd:
                 self.cheer(audience, symbol, min(count, CHEERS_HZ * LOOKS_S) / self.share)
 
     def watching(self) -> int:
-        """Return how many pages watch; those in pieces are estimated from their reports."""
+        """Return how many pages watch; those that fetch pieces are estimated from their reports."""
         return self._courts.watching() + round(sum(self._heard))
 
     async def tell(self) -> None:

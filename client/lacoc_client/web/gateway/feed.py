@@ -29,7 +29,7 @@ _RETRY_S = 1.0
 _WHY_S = 3.0
 _FETCH_AGAIN_S = 0.3
 _TRIP_S = 1.0
-"""Time between two measurements of the way to the court, however many pages want to know."""
+"""Least time between two measurements of how long a court takes to answer [s]."""
 _JOINED_S = 3.0
 """Longest wait of `joined` for a court that is not connected yet [s]."""
 
@@ -40,7 +40,7 @@ class CourtFeed:
     It may be started before the court, and goes on after each restart of the court.
 
     Args:
-        access: the way to the court, as a spectator.
+        access: how to reach the court, as a spectator.
         threads: threads that ask the court.
     """
 

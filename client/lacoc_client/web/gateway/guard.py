@@ -52,7 +52,7 @@ class Guard:
         self._public = public
         self._names = machine_names() | ({public.host} - {""})
         self._held: Counter[str] = Counter()
-        """WebSockets that are open, by the address of their machine."""
+        """Number of open WebSockets of each machine, by its address."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a connection on to the application, or refuse it."""
@@ -119,7 +119,7 @@ class Guard:
 def machine_of(scope: Scope) -> str:
     """Return the address of the machine that asks.
 
-    Behind a proxy that is believed, the proxy says it. "" if it is not known.
+    Behind a trusted proxy, it is the address that the proxy names. "" if it is not known.
     """
     client = scope.get("client")
     return client[0] if client else ""

@@ -5,10 +5,10 @@ from collections import OrderedDict
 from lacoc_shared.network.allowance import Allowance
 
 _GUESSES_HZ, _GUESSES_BURST = 0.5, 20
-"""How many wrong codes of a machine are answered without a wait: so many a second, and so many at
-once."""
+"""How many wrong codes of a machine are answered without a wait: in a second on average, and in a
+burst."""
 _LATER_S = 1.0
-"""How long a page waits for the answer to a wrong code beyond these [s]. So a machine tries at most
+"""Delay of the answer to each wrong code above these limits [s]. So a machine tries at most
 400 codes a second, even with 400 pages at a time. The right code never waits: a class may share one
 address."""
 _MOST_SENDERS = 1000

@@ -4,7 +4,7 @@ import msgspec
 
 
 class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a gateway, for programs that watch it, and how the request came to it."""
+    """The state of a gateway, for programs that watch it, and how their request reached it."""
 
     version: str
     """Version of LACOC."""
@@ -13,7 +13,7 @@ class GatewayHealth(msgspec.Struct, frozen=True, kw_only=True):
     host: str
     """`Host` of the request as it arrived here; a proxy may have replaced it."""
     unnamed_proxy: bool
-    """Whether a proxy told the gateway the machine that asks, but is not believed. Then all pages
-    seem to come from one machine."""
+    """Whether a proxy named the machine that asks, but the gateway does not trust this proxy. Then
+    all pages seem to come from one machine."""
     pages: tuple[str, ...] = ()
     """Paths at which the gateway has pages."""

@@ -64,8 +64,8 @@ class Home:
     exporter: Exporter | None = None
     """Serves the gateway's metrics."""
     told: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """For each court the addresses that commands are given; none: the court can be reached through
-    pages only."""
+    """For each court the addresses that the gateway tells to commands; none: the court can be
+    reached through pages only."""
     authority: str = ""
     """Certificate (PEM) of the event's own authority; "": it has no authority of its own."""
     key: str = field(default_factory=new_key)

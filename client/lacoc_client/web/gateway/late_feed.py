@@ -11,7 +11,7 @@ from lacoc_client.web.gateway.viewer import Viewer
 
 
 class _SentBy(Enum):
-    """The method of `Listener` with which a message came and is to be passed on."""
+    """The method of `Listener` by which a message arrived; the same method passes it on."""
 
     SENT = auto()
     IF_FAST = auto()

@@ -248,7 +248,7 @@ class Page:
         courts.claiming.discard(viewer)
 
     def _give_up(self) -> None:
-        """Close the page if it came in only for its token and has not shown it to a court."""
+        """Close a page that was let in because of a token which it has not shown to a court yet."""
         if self._viewer in self._courts.claiming:
             self._courts.sent_away += 1
             asyncio.get_running_loop().create_task(self._websocket.close(TRY_LATER, "full"))

@@ -49,14 +49,14 @@ class PageSeat:
         """Whether a join must bring files; False for a contest's team, whose files the office has
         already."""
         self._hold = ("", "")
-        """Seat and hold that were logged last."""
+        """Id of the seat, and whether the page held it (`Hold`), as they were logged last."""
 
     def join(self, asked: wire.JoinAsk, watching: Access, joined: Answer) -> None:
         """Take a seat, in place of the page's earlier seat if it had one.
 
         Args:
             asked: the page's request.
-            watching: the way to the court, as a spectator.
+            watching: how to reach the court, as a spectator.
             joined: called with the result of the join, on another thread.
 
         Raises:

@@ -97,8 +97,8 @@ class PageRequests(H11Protocol):
     """An HTTP connection of a browser; it is closed if half a request stays on it for too long.
 
     Otherwise somebody could open many connections, send half a request on each, and block them for
-    ever. A machine with very many connections gets no more, unless it is a proxy: it asks for other
-    machines.
+    ever. A machine with very many connections gets no more, unless it is a proxy, which asks for
+    other machines.
     """
 
     _too_late: asyncio.TimerHandle | None = None

@@ -121,7 +121,7 @@ class Recordings:
     def _copy(self) -> None:
         """Start to copy matches that are over and not packed.
 
-        Copy none if the contest keeps some back.
+        Copy none if the contest shows only some of its recordings.
         """
         folder = self._folder
         for match_id in self._over() if folder is not None and self._shown is None else ():

@@ -50,7 +50,7 @@ from lacoc_shared.words import say
 LESSON = "/leg"
 """Path of the lesson of one leg; every site with pages has it."""
 PATHS = ("/", "/play", "/practice", "/referee", "/watch", "/overlay", "/replay", "/contest", LESSON)
-"""Paths that all serve index.html; the script on the page looks which path it was opened at."""
+"""Paths that all serve index.html; the page's script reads at which path the page was opened."""
 
 _OLD_NAMES = {"favicon.ico": "icon.svg"}
 KEY_HEADER = "X-Lacoc-Key"

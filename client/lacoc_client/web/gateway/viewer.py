@@ -57,7 +57,7 @@ class Viewer:
         self._next_s = 0.0
         self.frames = Frames()
         self.is_page = True
-        """Whether this is one page; False: it stands for all pages that watch a picture in
+        """Whether this is one page; False: it stands for all pages that fetch a picture in
         pieces."""
         self.is_own = False
         """Whether the page has shown the page key, and so is one of the person who started the

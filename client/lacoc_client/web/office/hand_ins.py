@@ -8,11 +8,11 @@ from lacoc_shared.words import say
 
 _APPLY_MINUTES = 1
 _APPLICATIONS = 80
-"""So many applications may come from one machine at once, and then one a minute. A school behind
+"""How many applications one machine may send at once; after these, one a minute. A school behind
 one address has 35 teams, and some of them try twice."""
 _CHANGE_S = 10
 _CHANGES = 10
-"""So many times at once may a team change its files, and then once in `_CHANGE_S`."""
+"""How many times at once a team may change its files; after these, once in `_CHANGE_S`."""
 
 
 class _Kind(msgspec.Struct):

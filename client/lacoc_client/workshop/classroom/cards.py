@@ -60,7 +60,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     hand_up_s: float | None
     """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
     stuck: Phrase | None
-    """What went wrong in the same way in the last three trials; None: this is not so."""
+    """What went wrong, if the last three trials failed in the same way; else None."""
     coached: bool
     """Whether the student has taken over a gait that the coach found."""
     need: Need
@@ -127,7 +127,7 @@ def card(
 
 
 def hand_times(kept: Iterable[tuple[float, Evidence]]) -> float | None:
-    """Return when the student raised the hand that is up now; None: the hand is not up.
+    """Return when the student raised the hand that is up now [s]; None: the hand is not up.
 
     Args:
         kept: evidence of one student, each with its time [s], in order.

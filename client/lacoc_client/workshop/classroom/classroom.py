@@ -68,7 +68,7 @@ _QUIET_LOOK_S = 10.0
 
 
 class Classroom:
-    """A class; a `Host`. Used from the event loop only.
+    """A class, the `Host` of its students' pages; used from the event loop only.
 
     Args:
         folder: folder of the class.
@@ -344,7 +344,7 @@ class Classroom:
     def _handed(self, student: ClassStudent) -> Handed | None:
         """Return the table that a student was handed last, with the whole class or with the group.
 
-        None: none was.
+        None: the student was handed no table.
         """
         state = self.groups.of(student)
         both = (self.state.handed, state.handed if state is not None else None)

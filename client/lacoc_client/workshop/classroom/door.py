@@ -98,7 +98,7 @@ class ClassDoor:
         return student
 
     async def _make_room(self) -> None:
-        """Make room for a new student: delete the first one who did nothing and has no page open.
+        """Make room for a newcomer: delete the first student who did nothing and has no page open.
 
         So nobody can keep others out by entering under a hundred nicknames.
 

@@ -204,7 +204,7 @@ class DesignPage:
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
-            UserError: if there is no way to a court.
+            UserError: if no court can be reached.
         """
         if self._host.playing is None:
             raise UserError(say("class.no-court"))

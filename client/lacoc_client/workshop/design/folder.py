@@ -97,7 +97,7 @@ class Folder:
     def look(self) -> tuple[str, ...]:
         """Read the folder again.
 
-        Return the names of files that changed, came or went since before.
+        Return the names of files that were changed, added or removed since the last look.
         """
         with self._lock:
             self._look()

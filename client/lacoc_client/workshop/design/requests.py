@@ -254,7 +254,7 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
 
 
 class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
-    """Ask the coach for a map of gaits: one for each speed and arousal."""
+    """Ask the coach for a map of gaits: one for each speed and arousal (how excited it looks)."""
 
     job: _Job
     """Name of the search; see `CoachAsk`."""

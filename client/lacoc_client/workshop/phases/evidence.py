@@ -92,7 +92,7 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
     said: _Word
     """The student's answer."""
     was: tuple[_Word, ...]
-    """All right answers."""
+    """All correct answers."""
     leg: int = -1
     """Index of the leg; only if the guess was about a foot that was moved by one number."""
     level: int = -1

@@ -66,7 +66,7 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
     stopped: bool
     """Whether physics stopped before the end of the trial."""
     stood: tuple[int, ...] = ()
-    """Indices of the legs of that half of the feet of `same_feet_share`."""
+    """Indices of the legs whose feet are the half that `same_feet_share` counts."""
 
 
 class _FactFigures(msgspec.Struct, frozen=True, kw_only=True):

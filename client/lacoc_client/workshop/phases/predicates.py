@@ -15,7 +15,7 @@ from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_shared.words import Phrase
 
 _NEARLY = 0.99
-"""Largest share of a rule that is not met yet."""
+"""Largest share that is reported for a rule that is not met yet."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ class TriedWhere:
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
         """Return the outcome of the trial that keeps most of the limits.
 
-        Of equal ones, of the last.
+        If several trials keep equally many, it is the last of these.
         """
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [every([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]

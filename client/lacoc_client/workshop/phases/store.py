@@ -234,7 +234,7 @@ class ClassStore:
     def _written(self, documents: Iterable[Document]) -> None:
         """Note that documents are on the disk.
 
-        If a newer content came meanwhile, it still waits.
+        A document that has got newer content meanwhile still waits.
         """
         with self._lock:
             for document in documents:

@@ -17,8 +17,8 @@ from lacoc_shared.words import say
 STATE_BYTES = 512 << 10
 """Longest state of a document [bytes]; an update that makes it longer is refused."""
 COMPACT_BYTES = 48 << 10
-"""If a state is longer by this than the state of the same table without a past, the document
-without a past takes its place [bytes]."""
+"""If a state is longer by this than a state of the same table without earlier edits, the document
+without earlier edits takes its place [bytes]."""
 
 
 class TableDocument:
@@ -88,11 +88,11 @@ class TableDocument:
 
     @property
     def is_long(self) -> bool:
-        """Whether the past is so long that a document without it should take its place."""
+        """Whether earlier edits take so much room that a document without them should be used."""
         return len(self.state) > self._compact_bytes
 
     def fresh(self) -> "TableDocument":
-        """Return a document with the same entries and no past.
+        """Return a document with the same entries and without earlier edits.
 
         It can't be merged with a page's edits.
         """
@@ -138,7 +138,7 @@ class TableDocument:
 
 
 def document_of(entries: Mapping[str, Entry]) -> TableDocument:
-    """Make a document with these entries and no past."""
+    """Make a document with these entries and without earlier edits."""
     return TableDocument(_state_of(entries))
 
 

@@ -100,7 +100,7 @@ def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
 def _sequences(
     entries: Mapping[str, Entry], table: FileTable
 ) -> tuple[tuple[int, ...], ...] | None:
-    """Return the digits of each key of level B; None if the table is one of sequences itself.
+    """Return the digits of each key of level B; None if the table itself has the sequences.
 
     A key that uses a posture that is missing gets the first posture, because each key needs one.
     """

@@ -19,14 +19,14 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import say
 
 UPDATES_HZ, UPDATES_BURST = 100.0, 200
-"""How many updates of one table pass a second, and at once, from all pages together."""
+"""How many updates of one table all pages together may send: a second on average, and at once."""
 _COST_ENTRIES = 500
 """An update of a large table takes longer: it counts once more for each so many entries of the
 table."""
 _REFUSED_COST = 10
 """An update that is refused counts so many times, because the document must be read again."""
 _PEOPLE_S = 0.05
-"""Least time between two messages about where the others are [s]."""
+"""Least time between two messages that tell pages at which cells the other pages are [s]."""
 
 _FORGET_AFTER = 20_000
 """The memory of who typed into which cell is cleared when it has more cells than this."""
@@ -87,8 +87,8 @@ class SharedTable:
         self._telling: asyncio.TimerHandle | None = None
         self._told_s = 0.0
         self._draft: Draft | None = None
-        """The newest complete table: from before a change after which a table may be incomplete, or
-        from when it was last asked for."""
+        """The last complete table that was computed. This is done when somebody asks for it, and
+        before each change after which the table may be incomplete."""
         self._begin(TableDocument(state), epoch or new_token())
         self.is_touched = bool(state)
         """Whether anybody has ever changed the table; if not, it is not kept."""
@@ -142,7 +142,7 @@ class SharedTable:
     async def take(self, viewer: Viewer, told: TableUpdate) -> dict[str, Any]:
         """Merge an update of a page, and send it to the other pages.
 
-        When this returns, it is on the disk.
+        When this returns, the update is on the disk.
 
         Raises:
             UserError: if the update is for another table or an older document, or if the document
@@ -180,7 +180,7 @@ class SharedTable:
     def replace(self, document: TableDocument) -> None:
         """Replace the document.
 
-        All pages take the new one, and add edits that they had not sent.
+        All pages open the new document, and add to it the edits that they had not sent.
         """
         self._begin(document, new_token())
         self._seq += 1
@@ -189,11 +189,11 @@ class SharedTable:
             viewer.send(message)
 
     def fresh(self) -> TableDocument:
-        """Return a document with the same table and no past, for another shared table."""
+        """Return a document for another shared table: the same table, without earlier edits."""
         return self._document.fresh()
 
     async def forget(self, name: str) -> None:
-        """Remove the past of the table, and the proposals of one student."""
+        """Remove the table's earlier edits, and the proposals of one student."""
         self.replace(document_of(without_proposals(self._document.entries, name)))
         await self.keep_now()
 
@@ -231,10 +231,10 @@ class SharedTable:
         return self._draft
 
     def _keep_draft(self, before: Mapping[str, Entry]) -> None:
-        """Note that the table is about to differ from the draft.
+        """Note that the table has changed, so that the draft is old.
 
-        Before a change of anything else than numbers, the table becomes the draft: perhaps it is
-        the last complete one.
+        A change of anything else than numbers may make a table incomplete. Then the table as it was
+        before the change becomes the draft.
         """
         after = self._document.entries
         changed = (name for name in {*before, *after} if before.get(name) is not after.get(name))

@@ -123,7 +123,7 @@ class _Reader:
         """Read an edit; return how many edits it counts as, and whether it contains them.
 
         Args:
-            needs: list to which edits are added that this one refers to.
+            needs: to this list the edits are added to which this edit refers.
         """
         info = self._data[self.at]
         self.at += 1

@@ -43,7 +43,7 @@ _OTHERS = {
     "ppt/presentation.xml": say("gait.presentation"),
     "xl/workbook.bin": say("gait.binary-workbook"),
 }
-"""The kind of document that a file of this name in the zip shows."""
+"""Name of a file that only another kind of document has in its zip -> that kind of document."""
 _WANTED = say("gait.workbook")
 
 

@@ -1,4 +1,4 @@
-"""Loco-data workbooks as gait files: told from text, read and written."""
+"""Reads and writes Loco-data workbooks, and tells workbooks from gait files that are text."""
 
 import io
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The pictures that are cut into pieces; each is cut only while somebody asks for it."""
+"""What is cut into pieces while pages ask for it: the director's two pictures, and each court."""
 
 import asyncio
 import time
@@ -27,7 +27,9 @@ class _CutPicture:
 
 
 class Pictures:
-    """Starts and ends the cutting of a gateway's pictures; used from the event loop only.
+    """Starts and ends the cutting of pictures into pieces; used from the event loop only.
+
+    A picture is a court, or one of the two pictures that the director fills.
 
     Args:
         courts: the courts of the gateway.

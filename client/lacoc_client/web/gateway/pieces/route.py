@@ -42,7 +42,7 @@ class PiecesNow(msgspec.Struct, frozen=True):
 
 
 class Here(msgspec.Struct, frozen=True):
-    """The report of a page in pieces: that it is there, and how often it cheered, by symbol."""
+    """The report of a page that fetches pieces: it is there, and cheered so often, by symbol."""
 
     cheers: Annotated[list[Annotated[int, msgspec.Meta(ge=0)]], msgspec.Meta(max_length=SYMBOLS)]
 

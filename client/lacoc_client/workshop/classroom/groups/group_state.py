@@ -102,8 +102,8 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def group_title(name: str, students: Iterable[str]) -> str:
-    """Return the name of a group for lists in which students stand too.
+    """Return the name of a group for lists that also contain students.
 
-    It differs from their names.
+    It differs from the students' names.
     """
     return told_apart(name, students, "group", _TITLE_MOST)

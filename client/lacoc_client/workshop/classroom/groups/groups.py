@@ -25,11 +25,11 @@ from lacoc_shared.words import say
 
 _LONGEST_NAME = 20
 _CHANGES_HZ, _CHANGES_BURST = 10.0, 60
-"""How many changes of all groups pass a second, and at once; each change is told to the whole
-class."""
+"""How many changes of groups a class may make: in a second on average, and in a burst. Each change
+is told to the whole class."""
 _OWN_HZ, _OWN_BURST = 1.0, 20
-"""How many changes by one student pass a second, and at once, so that one student can't use up
-those of all."""
+"""How many of these changes one student may make: in a second on average, and in a burst. So one
+student can't use up the changes of the class."""
 
 
 class Groups:
@@ -124,13 +124,16 @@ class Groups:
             await self._tell()
 
     async def leave(self, student: ClassStudent) -> None:
-        """Let a student work on the own table again; a group without members ends."""
+        """Take a student out of the group, back to the student's own table.
+
+        A group without members ends.
+        """
         async with self._moving:
             if await self._leave(student):
                 await self._tell()
 
     async def forget(self, student: ClassStudent) -> None:
-        """Remove a student who is deleted from the group, and the student's proposals."""
+        """Remove a deleted student from the group, and the student's proposals from its table."""
         async with self._moving:
             self._own_allowances.pop(student.name, None)
             state = self.of(student)
@@ -177,7 +180,7 @@ class Groups:
             raise UserError(say("gateway.too-much"))
 
     def message(self, student: ClassStudent) -> bytes:
-        """Return the message to a student about the own group and all groups that can be joined."""
+        """Return the message to a student about the student's group and all groups of the class."""
         state = self.of(student)
         listed = [{"name": one.name, "members": len(one.members)} for one in self.states.values()]
         body: dict[str, Any] = {"groups": listed, "group": None}

@@ -1,1 +1,1 @@
-"""The six phases on the page: `learner` turns a student's acts into evidence, `diary` keeps it."""
+"""The six phases on the page: `learner` makes evidence of what a student does, `diary` keeps it."""

@@ -47,7 +47,7 @@ class Judged(msgspec.Struct, frozen=True, kw_only=True):
 
     said: str
     was: tuple[str, ...]
-    """All right answers; first the direction in which the foot moved most."""
+    """All correct answers; first the direction in which the foot moved most."""
     right: bool
 
 
@@ -63,7 +63,7 @@ class AnswerReply(msgspec.Struct, frozen=True, kw_only=True):
 
     right: bool
     was: tuple[Phrase, ...]
-    """All right choices."""
+    """All correct choices."""
     because: Phrase
     """An explanation of the right choices."""
 

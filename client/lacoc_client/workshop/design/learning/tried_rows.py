@@ -14,7 +14,7 @@ _SAME_DEG = 0.01
 def row_names(asked: TrialAsk, pressed: str) -> tuple[int, ...]:
     """Return the names of the rows that a pressed key uses.
 
-    They are digits; or 1, 2 ... in a table of level B.
+    In a table of level A the names are its keys; in a table of level B they are 1, 2 ... in order.
     """
     rows = _rows_of(asked, pressed)
     if asked.table is not None and asked.table.kind == "locomotion":

@@ -179,7 +179,7 @@ class StudioDesk:
         await asker.ask("cancel", request, Done, _CANCEL_S)
 
     def _job(self, name: str) -> str:
-        """Return a name for a search that no other page uses: the page's mark, then its name."""
+        """Return a name for a search, unique among all pages: the page's id, then `name`."""
         return f"{self._page}-{name}"
 
 

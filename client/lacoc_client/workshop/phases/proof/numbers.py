@@ -2,8 +2,8 @@
 
 A number is *typed* if the student typed it by hand into its cell, before the same number came there
 in another way. It is *made* if a tool or a paste put it there, and the student had typed the same
-number for a joint of this level before. It is *given* if it came from the lesson of one leg, or is
-such a copy of a number from the lesson: it may be in the table, but is not counted. Any other
+number for a joint of this level before. It is *given* if it came from the lesson of one leg, or if
+a tool or a paste copied it from there: it may be in the table, but is not counted. Any other
 number is *foreign*: it was pasted, or it came with a file, from the coach, or from the teacher.
 Numbers of the robot's start posture are none of these.
 """
@@ -40,7 +40,7 @@ class OwnTrial:
     """How many numbers were typed and differ by `NUMBER_DEG` from those that were in their cells
     before."""
     made: int
-    """How many numbers were made from typed ones, and differ in the same way."""
+    """How many numbers were made from typed ones, and differ by `NUMBER_DEG` from those before."""
     foreign: int
     """How many numbers are foreign, also those that did not change in this phase."""
 
@@ -146,7 +146,7 @@ def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
 
 
 def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
-    """Return the guesses of where a foot goes that count, in order.
+    """Return, in order, those guesses of where a foot goes that count.
 
     A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
     seen before where the foot goes if this joint turns in this direction.
@@ -172,7 +172,7 @@ def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
 
 
 def _moves(edit: Edited) -> set[_Move]:
-    """Return which joints an edit by hand turned, and how: moves that the student has seen."""
+    """Return which joints an edit by hand turned, and in which direction."""
     if edit.by != "hand":
         return set()
     return {
@@ -185,7 +185,7 @@ def _moves(edit: Edited) -> set[_Move]:
 
 
 def _typed_legs(evidence: Sequence[Evidence]) -> list[LegEdit]:
-    """Return the edits by hand, except of rows that were new."""
+    """Return the edits by hand, except those that filled new rows."""
     edits = (one for one in evidence if isinstance(one, Edited) and one.by == "hand")
     return [leg for edit in edits for leg in edit.legs if leg.before_deg]
 

@@ -95,7 +95,7 @@ class WorkshopPhase:
     def _done(self, evidence: Sequence[Evidence], start: int, again: bool) -> int:
         """Return how many pieces of evidence were needed until the work was done.
 
-        The work must be done.
+        May be called only when the work is done.
         """
         # Work that is done stays done, so bisection finds when that was.
         counts = range(start, len(evidence) + 1)

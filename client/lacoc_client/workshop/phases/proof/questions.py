@@ -83,7 +83,7 @@ def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where a foot goes after another change of the joint of the student's last guess."""
+    """Ask where a foot goes if the last guessed change is undone, or made on the mirrored leg."""
     guess = foot_guesses(seen)[-1]
     joint, leg = _LEVELS[guess.level], _label(guess.of_legs, guess.leg)
     way = _WAYS.get(_main_way(guess), say("phases.way-still"))
@@ -179,7 +179,7 @@ def push_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where the seam of the tried key is, or which row comes half a cycle later."""
+    """Ask where the key's seam (last row to first row) is, or which row is half a cycle later."""
     trial = _last_trial(seen)
     rows = trial.rows or tuple(range(1, max(2, trial.facts.postures) + 1))
     first, last = rows[0], rows[-1]
@@ -206,7 +206,7 @@ def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask in what the walk differs from that with the sample, or how long its cycle lasts."""
+    """Ask how the walk differs from that with the sample gait, or how long its cycle lasts."""
     periods_s = [one.facts.cycle_s for one in seen if isinstance(one, Tried) and one.facts.cycle_s]
     compared = [one.differs for one in seen if isinstance(one, Compared)]
     differs = compared[-1] if compared else ()

@@ -139,7 +139,7 @@ class TrialWork:
     numbers: int
     """How many numbers must be the student's own and changed since the phase began."""
     tools: bool = False
-    """Whether numbers count that a tool made from the student's own."""
+    """Whether numbers that a tool made from the student's own numbers count too."""
     kinds: ClassVar = (Tried,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
