@@ -153,22 +153,23 @@ class Timer:
 class _Call:
     """A call of a bot that has not returned yet."""
 
+    why: Phrase | None = None
+    """Why the bot takes too long; None: it does not."""
+    _first_s: float | None = None
+    """The thread's processor time at the first look [s]."""
+    _last_s = 0.0
+    _waited_s = 0.0
+    _interrupted = 0
+    _has_ended = False
+
     def __init__(self, timer: Timer, is_frame: bool, thread: int) -> None:
-        self.why: Phrase | None = None
-        """Why the bot takes too long; None: it does not."""
         self._timer = timer
         self._is_frame = is_frame
         self._thread = thread
         by_clock = timer.used_s < _BY_CLOCK * MOST.match_s
         self._clock_s = time.perf_counter if by_clock else time.thread_time
         self._began_s = self._clock_s()
-        self._first_s: float | None = None
-        """The thread's processor time at the first look [s]."""
-        self._last_s = 0.0
-        self._waited_s = 0.0
-        self._interrupted = 0
         self._lock = threading.Lock()
-        self._has_ended = False
 
     def end(self) -> None:
         """Mark the call as ended, so that nothing interrupts this thread any more."""

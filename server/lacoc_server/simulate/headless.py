@@ -156,6 +156,7 @@ def simulate(
     match = Match(setup, World, arena)
     if not match.duration_ticks:
         raise UserError(say("simulate.no-end", arena=setup.arena))
+    match.history.keep_nothing()  # nobody is there who could take an event back
     journal = Journal(match, folder, writer=PackedWriter)
     try:
         for beat in _play(match, journal, players):
@@ -197,7 +198,7 @@ def _follow(
     inputs = next(script)
     while True:
         beat = pass_beat(inputs)
-        for item, outcome in zip(inputs, beat.outcomes, strict=True):
+        for item, outcome in zip(inputs, beat.outcomes, strict=True) if inputs else ():
             if isinstance(item, JoinSeat) and isinstance(outcome, Refusal):
                 raise FileRefused(list(outcome.mistakes))
         yield beat
