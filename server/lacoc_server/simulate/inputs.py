@@ -36,7 +36,7 @@ class BotFailed(UserError):
 
 
 def failed(team: str, why: Phrase) -> BotFailed:
-    """Make the error that names a team and says why its bot failed."""
+    """Make the error which says that a team's bot failed, and why."""
     return BotFailed(say("simulate.bot-failed", team=team, why=why))
 
 
@@ -45,7 +45,7 @@ class Player:
     """A player of a seat: files and a bot."""
 
     join: JoinSeat
-    """The join; its `seat` is the player's seat."""
+    """The request to join the match, with the files; its `seat` is the player's seat."""
     bot: BotFactory
     late_ticks: int = 0
     """Ticks of PLAYING that pass before the brain sees its first frame. Players who meet again get
@@ -72,13 +72,13 @@ def whole_match(
 
 
 def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
-    """Yield the inputs of each beat until play begins: joins, ready, and the start.
+    """Yield the inputs of each beat until play begins: teams join, are ready, the match is started.
 
     Args:
-        joins: a join for each seat.
+        joins: for each seat, the request of its team to join, with its files.
 
     Returns:
-        The newest frame. Its phase is PLAYING, unless physics stopped.
+        The newest frame. Its phase is PLAYING, unless MuJoCo reported a fault.
     """
     yield [*joins]
     frame = yield [ReadySeat(join.seat, True) for join in joins]
@@ -108,7 +108,7 @@ def _play(frame: Frame, players: Sequence[Player], sheet: Sheet) -> Generator[In
 
 
 def _asked(player: Player, bot: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
-    """Call a player's bot or brain; an error of it becomes one that names the team."""
+    """Call a player's bot or brain; if it fails, raise `BotFailed` with the team's name."""
     try:
         return bot(*arguments, **named)
     except UserError as error:
@@ -116,7 +116,10 @@ def _asked(player: Player, bot: Callable[P, T], *arguments: P.args, **named: P.k
 
 
 def closing(phase: Phase) -> Decide:
-    """Return the decision that ends a match: official after its end, void before it."""
+    """Return the decision that closes a match.
+
+    It makes the result official if play has ended in `phase`; else it makes the match void.
+    """
     if phase is Phase.FINISHED:
         return Decide(AUTHOR, "", Official())
     halted = phase is Phase.HALTED

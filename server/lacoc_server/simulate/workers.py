@@ -32,7 +32,7 @@ in a row: then the bot blocks the process. On a busy machine it may miss a few w
 
 
 class WorkerDied(Exception):
-    """The process of a job ended before the job was done, or was ended because it took too long.
+    """The process that ran a job ended before the job was done, or because the job took too long.
 
     Args:
         what: what happened.
@@ -138,7 +138,11 @@ class Workers:
         child.end()
 
     def _do(self, job: _WorkerJob, child: "_WorkerProcess") -> "_WorkerProcess":
-        """Run a job in a process, and set its result; return the process, or its replacement."""
+        """Run a job in a process, and set the result of its future.
+
+        Returns:
+            The process; a new one if it ended.
+        """
         left = self._again
         while True:
             try:

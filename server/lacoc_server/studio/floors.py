@@ -1,4 +1,4 @@
-"""Keeps the floors that a process has compiled, because this takes longer than a short trial."""
+"""Keeps the floors for trials that a process has compiled; to compile one takes long."""
 
 from functools import lru_cache
 
@@ -11,9 +11,9 @@ from lacoc_server.world.world import SUBSTEPS
 
 @lru_cache(maxsize=16)
 def course_of(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Return the floor for a robot's trials, compiled at most once; arguments as in `make_course`.
+    """Return the compiled floor for a robot's trials; arguments as in `make_course`.
 
-    A process keeps the 16 floors that it used last.
+    The 16 floors that a process used last are kept; any other is compiled again.
     """
     return make_course(robot, steps)
 

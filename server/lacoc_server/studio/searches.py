@@ -1,4 +1,4 @@
-"""Runs the searches of a studio: one at a time, while the others wait in order."""
+"""Runs the searches of a studio for better gaits: one at a time, in the order of their requests."""
 
 import threading
 import time

@@ -1,4 +1,8 @@
-"""Fulfils a request for the coach, a map or variants: checks it, searches, and makes the reply."""
+"""Fulfils a student's request to search for gaits: checks it, searches, and makes the reply.
+
+A request asks for the coach (a better gait), a map (the best gait of each cell of a grid), or
+variants (six gaits to choose from).
+"""
 
 import threading
 from collections.abc import Sequence
@@ -45,7 +49,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 def fulfil(
     request: SearchRequest, workers: Workers, stop: threading.Event, tell: Tell
 ) -> CoachReply | MapReply | VariantsReply:
-    """Search for a better gait, a map or variants, as a request asks.
+    """Search for a better gait, a map of gaits, or six gaits to choose from, as a request asks.
 
     Args:
         request: the request.

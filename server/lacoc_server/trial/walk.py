@@ -15,7 +15,7 @@ Bools = npt.NDArray[np.bool_]
 
 
 class Press(NamedTuple):
-    """A key, and the tick in which it is pressed."""
+    """A key of a trial, and the tick in which it is pressed."""
 
     tick: int
     level: Level
@@ -43,7 +43,10 @@ class Span(NamedTuple):
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class Sensed:
-    """The measurements of one tick: of its last physics step, where no mean over all is named."""
+    """The measurements of one tick.
+
+    They are of its last physics step, unless a field says that it is a mean over all steps.
+    """
 
     load_n: Floats
     """(legs,) normal force between each shank and the floor, mean over the steps [N]."""

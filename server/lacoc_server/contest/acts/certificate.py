@@ -96,7 +96,14 @@ def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]
 
 
 def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
-    """Return the contest file with the certificate's entries, as bytes and as a `ContestFile`."""
+    """Return the contest file with the lines that name the certificate's files; write nothing.
+
+    Returns:
+        The file as bytes, and the same as a `ContestFile`.
+
+    Raises:
+        UserError: if the file can't be read, has a mistake, or names another certificate.
+    """
     try:
         data = file.read_bytes()
         table = read_toml(data).get("contest", {})
@@ -253,6 +260,9 @@ def _names(certificate: x509.Certificate) -> list[str]:
 
 
 def _is_of(name: str, host: str) -> bool:
-    """Return whether a certificate's name fits a host: the same, or "*." before its domain."""
+    """Return whether a name in a certificate covers a host.
+
+    It does if it is the host's own name, or "*." followed by the host's domain.
+    """
     name = name.lower()
     return name == host or (name.startswith("*.") and name[2:] == host.partition(".")[2])

@@ -1,4 +1,4 @@
-"""Decisions about a match: make the fact of a decision, and say what it would change."""
+"""An organiser's decisions about a match: makes the fact of one, and says what it would change."""
 
 from collections import Counter
 from collections.abc import Container, Iterable, Iterator, Sequence
@@ -84,7 +84,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
 
 def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say how changed matches would stand, and how many matches of a stage would disappear."""
+    """Say how the matches that change would stand, and how many of each stage would disappear."""
     gone: Counter[str] = Counter()
     for before, match in found.matches:
         if match is not None:
@@ -116,7 +116,7 @@ def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[P
 def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
     """Say which ranks would change.
 
-    Also name the later stages that are drawn already: they keep their teams.
+    Also name the stages that were drawn by the old ranks: they keep their teams.
     """
     for stage, team, old, now in found.ranks:
         name = title(then, stage)
@@ -131,7 +131,7 @@ def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
 
 
 def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say which stages would end, and which draw would follow or would wait for the organiser."""
+    """Say which stages would end, and which draw would follow, or would wait for the organiser."""
     ended = {view.name for view in was.stages if view.over}
     for view in then.stages:
         if view.over and view.name not in ended:

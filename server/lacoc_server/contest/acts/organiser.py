@@ -168,7 +168,7 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str 
 
 
 def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> list[AnyFact]:
-    """Return the facts that take a team out; no fact if it has left already.
+    """Return the facts that take a team out of a contest; no fact if it has left already.
 
     A team that has withdrawn can still be disqualified.
 
@@ -306,7 +306,7 @@ def waiting(file: Path) -> list[str]:
 
 
 def publish_to(file: Path, folder: Path) -> None:
-    """Write a contest as a folder, as `publish.publish` does, with the same errors."""
+    """Write all that is public of a contest into a folder; `publish.publish` lists the errors."""
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
         publish.publish(where, store.facts(), folder)
@@ -336,7 +336,7 @@ def prepare(
 
 
 def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
-    """Return warnings about plans that are legal, but hardly meant for this number of teams.
+    """Return warnings about plans of stages that are legal, but hardly fit the number of teams.
 
     Up to now there is one: a Swiss stage with more rounds than a team has opponents, so teams meet
     again.

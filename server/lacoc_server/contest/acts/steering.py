@@ -198,7 +198,7 @@ def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undr
 
 
 def done(contest: Contest, fact: AnyFact) -> Phrase:
-    """Say what a fact made by this module has done.
+    """Say what an organiser's fact has changed: for example a move, a pause or an announcement.
 
     Args:
         contest: the contest before the fact was appended.

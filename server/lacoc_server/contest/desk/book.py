@@ -63,7 +63,7 @@ class Book:
         return self.contest_of(self.facts)
 
     def contest_of(self, facts: tuple[AnyFact, ...]) -> Contest:
-        """Return the contest that follows from facts."""
+        """Return the contest that is computed from the given facts."""
         return self._newest.of(facts)
 
     @property

@@ -107,7 +107,7 @@ def draw(book: Book, asked: Draw) -> Said:
 
 
 def take_out(book: Book, asked: TakeOut) -> Effect:
-    """Take a team out, or say what that would change.
+    """Take a team out of the contest; if the request only asks, say what that would change.
 
     Raises:
         UserError: if the team has not entered.
@@ -138,7 +138,7 @@ def remove_picture(book: Book, team: str) -> Said:
 
 
 def rule(book: Book, asked: Rule) -> Effect:
-    """Decide about a match, or say what that would change.
+    """Decide about a match for the organiser; if the request only asks, say what would change.
 
     Raises:
         UserError: if there is no such match, game or team, or the reason or the points are missing.
@@ -150,7 +150,10 @@ def rule(book: Book, asked: Rule) -> Effect:
 
 
 def undraw(book: Book, asked: Undraw) -> Effect:
-    """Take the draw of a stage back, or say what that would change; errors as `undrawing`."""
+    """Take the draw of a stage back; if the request only asks, say what that would change.
+
+    The errors are those of `steering.undrawing`.
+    """
     return _decided(
         book,
         lambda contest: steering.undrawing(contest, asked.stage, asked.reason),
@@ -159,7 +162,7 @@ def undraw(book: Book, asked: Undraw) -> Effect:
 
 
 def substitute(book: Book, asked: Substitute) -> Effect:
-    """Give a team's place to a substitute, or say what that would change.
+    """Give a team's place to a substitute; if the request only asks, say what that would change.
 
     The errors are those of `steering.substituting`.
     """

@@ -117,7 +117,11 @@ def _to_draw(contest: Contest) -> ToDraw | None:
 
 
 def _teams(book: Book) -> Iterator[TeamRow]:
-    """Yield the rows of all teams; those whose files were refused, or wait, come first."""
+    """Yield a row for each team.
+
+    First come teams whose files were refused, then teams whose files wait for the organiser's
+    approval.
+    """
     contest = book.contest
     played = [view.stage.entries for view in contest.stages if not view.over]
     for row in _rows(book):

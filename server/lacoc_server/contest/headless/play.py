@@ -61,7 +61,7 @@ class _DueGame(NamedTuple):
 
     @property
     def name(self) -> tuple[str, int]:
-        """The pairing, and the number of the game in it."""
+        """Id of the game's pairing, and number of the game in its match."""
         return self.match.pairing.id, self.match.next_game
 
     @property
@@ -168,9 +168,9 @@ def _still_due(
     known: Sequence[Played | Replaced],
     facts: tuple[AnyFact, ...],
 ) -> Iterator[AnyFact]:
-    """Yield those of the known results whose games, by the newest facts, have no result yet.
+    """Yield the results that can still be appended: those of games that are still to be played.
 
-    Another program may just have appended another result of such a game, a fact after which the
+    Meanwhile another program may have appended another result of the game, a fact after which the
     game is not played, or other files of a team.
 
     Args:
@@ -204,7 +204,7 @@ def _games(
     steer: str,
     busy: Container[tuple[str, int]],
 ) -> Iterator[_DueGame]:
-    """Yield the games that can be played now, except those that are `busy`."""
+    """Yield the games that can be played now, except those in `busy`, which are being played."""
     files = _files(contest)
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):
@@ -272,10 +272,9 @@ def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
 
 
 def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
-    """Write the record of a game under a temporary name.
+    """Save the record of a game: write it under a temporary name, then rename it.
 
-    Rename it once it is complete and on the disk. A record that another program has written
-    meanwhile stays, because facts may have its hash.
+    A record that another program has saved meanwhile stays, because facts may have its hash.
     """
     assert record is not None
     path = packed_path(folder.records, job.match_id)

@@ -149,7 +149,7 @@ def ended(job: Job, future: "Future[PlayedAlone | Phrase]") -> PlayedAlone:
 
 
 def _stuck(job: Job, said: Phrase) -> BotFailed:
-    """Return the error for a bot that ended its process; it names the team that has this bot."""
+    """Return the error for a bot because of which a worker process ended; it names the team."""
     of_bot = [one.join.team for one in job.players if _name(one) == said.values["bot"]]
     return failed(of_bot[0] if of_bot else job.teams[0], said)
 
@@ -275,7 +275,7 @@ def bot_of(arena: arenas.Arena, seated: Seated) -> BotFactory:
 
 
 def _name(seated: Seated) -> str:
-    """Return a bot's name for messages: its file as the team entered it, or its own name."""
+    """Return a bot's name for messages: the name of its file, or of an installed bot."""
     return seated.bot if seated.program is None else f"{seated.bot}.py"
 
 

@@ -1,7 +1,8 @@
-"""Copies of records that another machine writes, in the contest's own folder.
+"""Keeps copies of records in the contest's folder here, while a court elsewhere writes them.
 
 A copy grows while the match is played. It is always the beginning of a record, like the
-record of a killed court, so any court can go on from it.
+record of a killed court, so any court can go on from it. After a match, its record is packed: its
+segments become one file.
 """
 
 import os
@@ -16,14 +17,14 @@ from lacoc_shared.words import say
 
 
 class Taken(Enum):
-    """What another machine's answer added to the copy of a record."""
+    """What another machine's answer added to the copy of a match's record."""
 
     MORE = "more"
     """The copy has grown."""
     NOTHING = "nothing"
     """The answer does not continue the copy: the other machine has no more at present."""
     WHOLE = "whole"
-    """The whole packed record is here."""
+    """The finished record is here completely, as one file."""
 
 
 def have(folder: Path, match_id: str) -> dict[str, int]:
@@ -70,7 +71,7 @@ def take(folder: Path, match_id: str, part: Copied) -> Taken:
 
 
 def _finish(folder: Path, match_id: str, packed: Path) -> None:
-    """Rename the complete packed copy to its final name, and delete the match's segments."""
+    """Give the complete copy of a finished record its final name; delete the match's segments."""
     unfinished = _unfinished(packed)
     if not unfinished.exists():
         return
@@ -99,5 +100,5 @@ def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
 
 
 def _unfinished(packed: Path) -> Path:
-    """Return the path of a packed copy that is not complete yet."""
+    """Return the path for the copy of a finished record, as long as the copy is not complete."""
     return packed.with_name(f"{packed.name}.copy")

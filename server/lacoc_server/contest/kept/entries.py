@@ -295,7 +295,7 @@ class EntryFolder:
         """Read an entry.
 
         Raises:
-            UserError: if it is not there, or if its files are not those that were frozen.
+            UserError: if it is not there, or if its files have changed since they were saved.
         """
         place = self.path / entry_hash
         if not ENTRY_HASH.fullmatch(entry_hash):  # it may come from facts that a stranger wrote

@@ -43,7 +43,7 @@ class ContestFolder:
         self.secrets = contests.secrets_path(file)
         """File of all tokens."""
         self.port = contests.port_path(file)
-        """File with the port at which the pages were opened last; none if `pages` is set."""
+        """File with the last port of the pages; there is none if the contest file sets the port."""
         self.contacts = folder / f"{file.stem}.contacts.json"
         """File that says how to reach the teams."""
         self.published = contests.published_path(file).absolute()
@@ -62,9 +62,9 @@ class ContestFolder:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """In the block, keep all other processes from running the contest.
+        """Until the block ends, keep all other processes from running the contest.
 
-        A killed process locks nobody out.
+        The lock also ends if this process is killed.
 
         Raises:
             UserError: if another process runs the contest, or the folder can't be written.
@@ -82,7 +82,7 @@ class ContestFolder:
 
     @property
     def games(self) -> list[Arena]:
-        """The arenas of all stages; stages with the same arena and open levels share one."""
+        """The arenas of all stages; stages with the same arena and levels of keys share one."""
         found: dict[tuple[str, tuple[Level, ...]], Arena] = {}
         for plan in self.plans:
             arena = game(plan)

@@ -15,7 +15,7 @@ from lacoc_shared.words import say
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """The role of a contest's folder on this machine, and what it says about other machines."""
+    """The role of this machine in a contest, and the addresses of other machines that have one."""
 
     role: Literal["office", "copy", "retired"] = "office"
     """office: the contest is run here. copy: another machine's office is copied here. retired: the

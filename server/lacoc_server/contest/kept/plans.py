@@ -79,7 +79,7 @@ def open_stage(contest: ContestFile, file: Path) -> OpenStage | None:
         file: its path, for messages.
 
     Raises:
-        UserError: if entries are wrong, or there are two such stages.
+        UserError: if a setting of the stage is wrong, or there are two open stages.
     """
     found = {name: one for name, one in contest.stages.items() if one.get("format") == OPEN}
     if not found:
@@ -105,7 +105,7 @@ def plans(contest: ContestFile, file: Path) -> list[Planned]:
         file: its path, for messages.
 
     Raises:
-        UserError: if entries are wrong; the message names the first one of each stage.
+        UserError: if settings are wrong; the message names the first wrong one of each stage.
     """
     wrong = Gathered()
     found: dict[str, Planned | None] = {}
@@ -132,10 +132,10 @@ def _read(
         name: its name.
         table: its table in the file.
         contest: the contest file.
-        before: the stages before it in the file, by name; None: that stage has wrong entries.
+        before: the stages before it in the file, by name; None: that stage has wrong settings.
 
     Raises:
-        UserError: at the first wrong entry.
+        UserError: at the first wrong setting.
     """
     try:
         plan = _plan(name, table, contest.limits)
@@ -243,7 +243,7 @@ def _check(plan: Planned, before: Mapping[str, Planned | None], courts: Sequence
 
     Args:
         plan: the plan of a stage.
-        before: the plans of the stages before it, by name; None: that stage has wrong entries.
+        before: the plans of the stages before it, by name; None: that stage has wrong settings.
         courts: names of the contest's courts.
 
     Raises:

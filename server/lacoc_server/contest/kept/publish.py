@@ -84,7 +84,7 @@ def entries_of(facts: Iterable[AnyFact]) -> set[str]:
 
 
 def _save_record(source: Path, to: Path, wanted: str) -> None:
-    """Copy a record, or pack a copy of one that the court keeps open until its next match.
+    """Copy a record into one file, also if it is still in segments because its court has it open.
 
     Raises:
         UserError: if it is missing, or its hash is not the one in the facts.

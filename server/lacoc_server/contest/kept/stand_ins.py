@@ -11,7 +11,7 @@ from lacoc_shared.words import say
 
 
 def stand_ins(path: Path) -> list[str]:
-    """Return the names of the courts in the list.
+    """Return the names of the courts that run here because their own machine was lost.
 
     Args:
         path: the list; a name stands on each line.
@@ -29,7 +29,7 @@ def stand_ins(path: Path) -> list[str]:
 
 
 def stand_in(path: Path, court: str) -> None:
-    """Add a court to the list.
+    """Add a court to the list of courts that run on the office's machine in place of their own.
 
     Raises:
         UserError: if the list can't be read or written.

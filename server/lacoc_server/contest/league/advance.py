@@ -48,7 +48,7 @@ def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[
 
 
 def _placed(table: Table) -> Iterator[tuple[int, Standing]]:
-    """Yield the rows of a table with their places, as the seeding of the next stage counts them."""
+    """Yield the rows of a table, each with the team's place by which the next stage is seeded."""
     for place, row in enumerate(table.rows, 1):
         yield (place if row.shares else row.rank), row
 
@@ -61,9 +61,9 @@ def _reason(
     gone: set[str],
     moved: Phrase | None,
 ) -> Phrase:
-    """Say why a team goes on: its place, and what ranked it above the team just behind it.
+    """Say why a team goes on: its place, and which tie-break ranked it above the next team.
 
-    If it is the last of several tied teams, say instead what ranked it below the team before it.
+    The last of several teams with equal points is told which one ranked it below the team above.
     """
     at = next(at for at, row in enumerate(table.rows) if row.team == team)
     row, *behind = table.rows[at:]

@@ -434,9 +434,9 @@ def _shifts(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Sh
 
 
 def _moves(facts: Sequence[AnyFact]) -> tuple[Moved, ...]:
-    """Find the newest move of each match.
+    """Find the newest move of each match to another court or time, or before another match.
 
-    A later shift also postpones the earliest time of a move.
+    If a match was moved to a time, a shift after that postpones this time too.
     """
     moves: dict[str, Moved] = {}
     for fact in facts:

@@ -38,7 +38,7 @@ class Fact(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True, tag_fi
 
 
 class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
-    """A team entered with these files."""
+    """A team has entered the contest; the fact has the hash of its files."""
 
     team: Name
     files: str = ""
@@ -118,7 +118,7 @@ class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=Tru
 
 
 class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
-    """A stage will be played in this format. The newest plan before the draw counts."""
+    """The plan of a stage: its format and settings. The newest plan before the draw counts."""
 
     stage: Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,31}$")]
     format: Name
@@ -151,7 +151,7 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
 
 
 class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
-    """A stage begins with these teams; their order is their seeding, the best first."""
+    """A stage is drawn: its teams are fixed. Their order is their seeding, the best first."""
 
     stage: str
     entries: tuple[Name, ...]
@@ -171,7 +171,7 @@ class Undrawn(Fact, frozen=True, kw_only=True, tag="undrawn"):
 
 
 class RoundDrawn(Fact, frozen=True, kw_only=True, tag="round-drawn"):
-    """A round of a Swiss stage begins with these pairs.
+    """The pairs of a round are fixed, in a stage whose rounds are drawn one by one.
 
     A later correction of results does not change the pairs.
     """
@@ -200,7 +200,7 @@ class Recalled(Fact, frozen=True, kw_only=True, tag="recalled"):
 
 
 class Played(Fact, frozen=True, kw_only=True, tag="played"):
-    """A game has ended with this official result."""
+    """A game has ended at its court, or without a network, with an official result."""
 
     pairing: Name
     game: Annotated[int, msgspec.Meta(ge=1)]
@@ -223,7 +223,7 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
 
 
 class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
-    """A decision: the game counts with this result, whatever was played."""
+    """A decision: the game counts with a result that the organiser gives, whatever was played."""
 
     pairing: Name
     game: Annotated[int, msgspec.Meta(ge=1)]
@@ -266,12 +266,12 @@ class Moved(Fact, frozen=True, kw_only=True, tag="moved"):
 
     pairing: Name
     court: str = ""
-    """The only court for it; "": any court."""
+    """The only court for the match; "": any court."""
     before: str = ""
-    """Pairing of the match directly before which it is played; "": it keeps its place in the
-    schedule."""
+    """Pairing of another match: this one is played directly before it. "": it keeps its place in
+    the schedule."""
     not_before_ms: Annotated[int, msgspec.Meta(ge=0)] = 0
-    """It is not called before this time, in milliseconds since 1970, UTC; 0: at any time."""
+    """The match is not called before this time, in milliseconds since 1970, UTC; 0: at any time."""
 
 
 class Paused(Fact, frozen=True, kw_only=True, tag="paused"):

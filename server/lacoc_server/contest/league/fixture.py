@@ -9,7 +9,7 @@ from lacoc_shared.words import Phrase, say
 
 
 def named(contest: Contest, pairing: str, game: int = 0) -> Phrase:
-    """Name a match as `match_fixture` does, or one of its games as `fixture` does.
+    """Name a match, such as "Semi-final 1", or a game of it: "Semi-final 1, game 2 of 3".
 
     If the draw of its stage was taken back, the match is named by stage, group and round, and its
     games are not named apart.

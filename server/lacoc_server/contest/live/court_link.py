@@ -1,8 +1,8 @@
 """The office's connection to one court: assigns matches, and reads their states and results.
 
-Nothing here waits. A court's health says how new its sheet and its events are; if they are newer
-than the copies here, this asks for them. So a lost message, or a restart of court or office, costs
-half a second, and no result is lost.
+Nothing here waits. A court's health messages say how new its sheet and its events are. If they are
+newer than the copies here, the office asks for them. So after a lost message, or a restart of court
+or office, the newest ones are here half a second later, and no result is lost.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""The office of a contest: it gives courts their games, and takes in the results.
+"""The office of a contest: it gives courts their games, and appends their results to the facts.
 
 It keeps no state of its own: everything is in the facts and at the courts. So it can be killed at
 any moment: started again, it reads the facts, asks the courts what they have, and goes on.
@@ -263,7 +263,7 @@ class Office:
                 self._open_matches.look(link, now_ms)
 
     def _may_ask(self, call: str, now_ms: int) -> bool:
-        """Return whether a court may be asked about a call again: at most once a second."""
+        """Return whether the office may ask a court about a call now: at most once a second."""
         if call in self._asked or now_ms - self._asked_ms.get(call, 0) < _AGAIN_MS:
             return False
         self._asked_ms[call] = now_ms

@@ -49,9 +49,9 @@ class OpenMatches:
         self._refused: dict[str, Phrase] = {}
 
     def look(self, link: CourtLink, now_ms: int) -> None:
-        """Look at a court that has no game of the contest.
+        """Give the next open match to a court if it is free.
 
-        Give it the next open match if it is free.
+        This is called only for courts that have no game of the contest.
 
         Args:
             link: the connection to the court.

@@ -1,4 +1,4 @@
-"""Copies the records that a court on another machine writes, through its link."""
+"""Copies the records of a court on another machine, over the office's connection to that court."""
 
 import time
 from pathlib import Path

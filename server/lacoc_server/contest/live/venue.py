@@ -133,9 +133,9 @@ def _check_free(contest: ContestFile, name: str, listen: Sequence[str]) -> None:
 
 
 def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], list[str]]:
-    """Return a function that makes the command words with which a court is started again.
+    """Return a function that makes the command line with which a court is started again.
 
-    If the court took a free port at its first start, these words name the same port.
+    If the court was given a free port at its first start, the command line names the same port.
     """
     place, _, port = listen.rpartition(":")
 

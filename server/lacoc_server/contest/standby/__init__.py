@@ -1,1 +1,1 @@
-"""A second machine for a contest's office: it copies what the office keeps, and can take over."""
+"""A second machine for a contest's office: it copies the office's folder, and can take over."""

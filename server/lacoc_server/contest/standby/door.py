@@ -1,4 +1,7 @@
-"""Answers the second machine, which may read all that the office keeps; messages are encrypted."""
+"""Answers the machine that copies the office; it may read all files of the office.
+
+The messages between the two machines are encrypted.
+"""
 
 import hashlib
 import threading
@@ -43,7 +46,9 @@ _SILENT_S = 10.0
 
 
 class StandbyDoor:
-    """Answers the second machine; any thread may ask. Used as a context manager.
+    """Answers the machine that copies the office; any thread may use it.
+
+    Used as a context manager.
 
     Args:
         where: the contest.
@@ -87,7 +92,7 @@ class StandbyDoor:
         return self._sealing.seal(encode(self.answer(request)), payload)
 
     def answer(self, asked: AnyAsk) -> AnyAnswer:
-        """Answer a request that was decrypted with the right token's key."""
+        """Answer a decrypted request of another machine of the contest."""
         try:
             self._tenure.hear(asked.generation)
             with self._one:
@@ -188,7 +193,7 @@ def version_of(waiting: Mapping[str, Application]) -> str:
 
 
 def with_segments(records: Path) -> tuple[str, ...]:
-    """Return the ids of the matches whose records are still segments, and are not packed yet.
+    """Return the ids of the matches whose records are still in segments, and not in one file.
 
     Args:
         records: folder of the records.

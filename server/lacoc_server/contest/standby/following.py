@@ -1,4 +1,4 @@
-"""Keeps a copy of an office's folder equal to the original.
+"""Keeps a copy of the folder of another machine's office, and brings it up to date step by step.
 
 A step asks what the office has, and copies what is missing: first entries, secrets and records,
 because facts can name them, then the facts themselves. The facts of a step were read before its
@@ -42,7 +42,7 @@ _TRIES = 5
 
 
 class _Changed(Exception):
-    """Something at the office changed while it was copied, so the step must be repeated."""
+    """A file of the office changed while it was copied, so the copying must be repeated."""
 
 
 class CopyingEnded(Exception):
@@ -265,7 +265,7 @@ def _following(known: Sequence[AnyFact], bodies: Sequence[str]) -> tuple[AnyFact
 
 
 def _missing(records: Path, facts: Sequence[AnyFact]) -> Iterator[str]:
-    """Yield the ids of the matches that have a result, but no packed record here."""
+    """Yield the ids of the matches that have a result, but no complete record in this folder."""
     for fact in facts:
         if isinstance(fact, Played) and fact.record:
             match_id = fact.record.removesuffix(".mcap")

@@ -1,4 +1,4 @@
-"""Looks for a later office on all known machines, and tells earlier ones of this office."""
+"""Looks on all known machines for an office with a later generation; ends earlier offices there."""
 
 import threading
 from contextlib import ExitStack

@@ -59,10 +59,7 @@ class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
 
 
 class RecordAsk(StandbyAsk, frozen=True, kw_only=True, tag="record"):
-    """Asks for the next part of a match's record, as `Copy` between office and court.
-
-    The answer is `Got`.
-    """
+    """Asks for the next part of a match's record. The answer is `Got`."""
 
     match_id: str
     have: dict[str, int]
@@ -93,7 +90,7 @@ class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="
     """The time at which each waiting team sent its files [ms since 1970, UTC]; None: the second
     machine has this version of the list already."""
     records: tuple[str, ...]
-    """Ids of the matches whose records are still written, or not packed yet."""
+    """Ids of the matches whose records are still in segments, and not in one file."""
 
 
 class Got(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="got"):
@@ -103,7 +100,7 @@ class Got(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="go
 
 
 class Lacks(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="lacks"):
-    """What was asked for is not there, or not any more."""
+    """Answer to a request for something that the office does not have, or no longer has."""
 
     why: Phrase
 

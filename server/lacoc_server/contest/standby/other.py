@@ -1,4 +1,4 @@
-"""Asks another machine of the contest, over the network."""
+"""Sends requests to an office on another machine, and reads its answers."""
 
 from contextlib import ExitStack
 from typing import Self, TypeVar
@@ -28,7 +28,7 @@ class OtherToken(UserError):
 
 
 class LacksIt(Exception):
-    """The other machine does not have what was asked for (any more)."""
+    """The other machine does not have what was asked for, or no longer has it."""
 
     def __init__(self, why: Phrase) -> None:
         super().__init__(why.code)

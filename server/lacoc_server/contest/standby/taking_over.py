@@ -1,4 +1,4 @@
-"""The office goes on at a second machine, from its copy."""
+"""Makes a second machine the office of a contest, from its copy of the office's folder."""
 
 import time
 from collections.abc import Iterator, Sequence
@@ -30,7 +30,9 @@ _LEFT = ".left"
 
 
 def begin_copying(where: ContestFolder) -> None:
-    """Allow copying again in a folder in which a copying program had to end.
+    """Allow a program to copy another machine's office into this folder.
+
+    It was forbidden if somebody began to make this machine the office.
 
     Raises:
         UserError: if the file with this machine's role can't be read or written.
@@ -89,7 +91,7 @@ def _check_gone(other: Other) -> None:
 
 @contextmanager
 def _alone(where: ContestFolder) -> Iterator[None]:
-    """Have the copying program end; keep all other programs out of the folder until the block ends.
+    """End the program that copies into this folder; until the block ends, no other one may use it.
 
     Raises:
         UserError: if another program holds the folder.

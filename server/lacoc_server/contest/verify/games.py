@@ -293,7 +293,10 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
 
 
 def _is_of_court(record: Record, setup: Setup, game: GameToCheck, arena: Arena) -> bool:
-    """Return whether a record is from the court that had the game; or from none, if none had it."""
+    """Return whether a record is of the court that had the game.
+
+    If the game was played without a network, return whether the record is of no court.
+    """
     if game.call is not None:
         return setup.court == game.call.court
     wanted = setup_of(setup.match_id, arena, setup.limits)

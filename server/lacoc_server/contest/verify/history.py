@@ -130,7 +130,7 @@ def _entries(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
 
 
 def _draws(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Make each draw again from the facts before it; yield the draws that differ from it."""
+    """Compute each draw again from the facts before it; yield a phrase for each that differs."""
     for at, fact in enumerate(facts):
         if isinstance(fact, Drawn | RoundDrawn):
             again = due(compute(facts[:at], FORMATS), FORMATS)

@@ -35,7 +35,7 @@ _MOST = 1e4
 
 
 class AgentCourt:
-    """A game with its robots, and the spaces of what agents see and do.
+    """A game with its robots, and the observation and action space of each agent.
 
     Args:
         arena: name or folder of the arena.
@@ -101,7 +101,7 @@ class AgentCourt:
         """Return a new episode that has not begun; its match already has a sheet.
 
         Raises:
-            UserError: if a robot does not stay on its start place, or physics stops.
+            UserError: if a robot does not stay on its start place, or MuJoCo reports a fault.
             FileRefused: if a file has mistakes.
         """
         return Episode(self.begun)
@@ -178,7 +178,7 @@ class AgentCourt:
 
 
 def shares(action: Any, shape: tuple[int, ...]) -> Angles:
-    """Return an action of angles as an array of this shape, with numbers limited to -1 to 1.
+    """Return an action as an array of this shape, with each number limited to -1 to 1.
 
     Args:
         action: the action that was given.

@@ -57,7 +57,7 @@ class Begun:
 
     Args:
         arena: the arena.
-        joins: a join for each seat.
+        joins: for each seat, the request of a team to join, with its files.
         angles: whether the robots follow angles instead of keys.
     """
 
@@ -71,7 +71,7 @@ class Begun:
         self._saved: dict[int, bytes] = {}
 
     def arena_at(self, place: int) -> Arena:
-        """Return the arena with a start place as its first one."""
+        """Return the arena with a start place moved to the front of its list."""
         if place not in self._arenas:
             self._arenas[place] = begun_at(self.arena, place)
         return self._arenas[place]
@@ -96,7 +96,7 @@ class Begun:
         """Lead a match to its first beat of play.
 
         Raises:
-            UserError: if a robot does not stay on its start place, or physics stops.
+            UserError: if a robot does not stay on its start place, or MuJoCo reports a fault.
             FileRefused: if a file has mistakes.
         """
         if place not in self._saved:
@@ -131,7 +131,7 @@ class Episode:
 
     @property
     def has_begun(self) -> bool:
-        """True after a `begin` or a `load`."""
+        """True once an episode was begun or loaded."""
         return self._frame is not None
 
     @property
@@ -146,10 +146,10 @@ class Episode:
         return self._frame
 
     def require_begun(self) -> None:
-        """Check that there was a `begin` or a `load`.
+        """Check that an episode was begun or loaded.
 
         Raises:
-            UserError: if there was neither.
+            UserError: if none was.
         """
         if not self.has_begun:
             raise UserError(say("environment.not-begun"))
@@ -183,7 +183,7 @@ class Episode:
 
     @property
     def stopped(self) -> bool:
-        """True if physics stopped."""
+        """True if the match is halted, because MuJoCo reported a fault."""
         return self.match.phase is Phase.HALTED
 
     def pass_beats(self, keys: Sequence[Key | None], beats: int = 1) -> None:
@@ -324,7 +324,7 @@ class Episode:
             raise
 
     def _inputs(self, keys: Sequence[Key | None]) -> list[Input]:
-        """Return the inputs of the next beat, and note the keys."""
+        """Return the inputs of the next beat: keys that seats press. Note them for `pressed`."""
         inputs: list[Input] = []
         match = self.match
         for seat, key in enumerate(keys):
@@ -366,7 +366,7 @@ def saved_bytes(given: Any) -> bytes:
 
 
 def _contents(join: JoinSeat) -> list[bytes | None]:
-    """Return robot, postures and locomotion of a join, without the names of the files."""
+    """Return the contents of a joining team's files, without names: robot, postures, locomotion."""
     files = (join.robot, join.postures, join.locomotion)
     return [None if file is None else file.data for file in files]
 

@@ -22,7 +22,7 @@ from lacoc_shared.words import say
 
 
 class RowEnvironment(Protocol):
-    """An environment of one agent, as `Rows` uses it."""
+    """What `Rows` needs of each of its environments, which have one agent each."""
 
     OPTIONS: tuple[str, ...]
     """Names of the options of `reset`."""

@@ -351,7 +351,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             raise UserError(say("environment.not-begun"))
 
     def _tick(self) -> bool:
-        """Let a tick pass; return False if physics stopped in it."""
+        """Let a tick pass; return False if MuJoCo reported a fault in it."""
         state = self._drive.tick(self._state)
         if self._world.step([state.angles]) is not None:
             return False
@@ -359,7 +359,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return True
 
     def _way(self, vector: Any) -> tuple[float, float]:
-        """Return the parts of a world vector ahead and to the left of the robot's first heading."""
+        """Split a vector of the world frame by the robot's heading at the start: ahead, left."""
         _, _, _, qw, qx, qy, qz = self._from[:7].tolist()
         x, y = 2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz)
         length = math.hypot(x, y)

@@ -55,7 +55,7 @@ def fork(
         source: the record.
         beat: first beat that the fork plays itself, at most the one after the record's last.
         change: how the fork differs from the record; None: it has the same inputs.
-        changes: the change in the form of the fork's record; None: the record does not name it.
+        changes: the same change, as the fork's record describes it; None: the record does not.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
         seconds: how long the fork goes on at most [s]; None: until play ends.
@@ -84,7 +84,7 @@ def fork(
 
 
 def _check_phase(match: Match, change: ForkChange) -> None:
-    """Check that players can take over in the match's phase.
+    """Check that new players can take over seats in the present phase of the match.
 
     Raises:
         UserError: if the match has not begun, or play is over.

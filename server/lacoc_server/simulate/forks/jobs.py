@@ -1,4 +1,4 @@
-"""A fork as a job that another process can take."""
+"""Describes a fork that is to be played, in a form that can be sent to another process."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -82,7 +82,7 @@ def opened_record(file: str) -> ForkSource:
 
 
 def bots_of(source: ForkSource, names: tuple[str, ...], folder: Path | None) -> list[BotFactory]:
-    """Return the bots of these names, for a record's arena.
+    """Find the bots with these names; they must fit the game of the record.
 
     Raises:
         UserError: if there is no such bot.
@@ -93,7 +93,7 @@ def bots_of(source: ForkSource, names: tuple[str, ...], folder: Path | None) -> 
 
 
 def changes_of(job: ForkJob, source: ForkSource) -> ForkChanges:
-    """Return the changes of a fork in the form in which its record names them."""
+    """Return what differs between a fork and its origin, as the fork's own record describes it."""
     bots = dict(zip(source.seats, job.bots, strict=False))
     seats = tuple(
         ForkSeat(seat=seat, bot=_bot_name(bots.get(seat, "")), script=_script_name(job, seat))

@@ -139,7 +139,7 @@ class ForkLine:
         return [seat.index for seat in self.match.seats if seat.index not in self._change.players]
 
     def _kept(self, record: Record) -> Iterator[tuple[int, list[Input]]]:
-        """Yield the recorded inputs that the fork keeps, by beat."""
+        """Yield each beat of the record with those of its inputs that the fork keeps."""
         for beat, items in record.inputs.items():
             if beat >= self._first and (kept := [item for item in items if self._keeps(item)]):
                 yield beat, kept
@@ -191,7 +191,7 @@ class ForkLine:
 
 
 def of_bot(bot: BotFactory, seat: int, variant: int = 0) -> Callable[[], Press]:
-    """Return a player that lets a bot play.
+    """Return a function that makes a new player of a fork's seat: a bot with small delays.
 
     Args:
         bot: the bot.

@@ -127,7 +127,7 @@ def student(t: float, freedom: int) -> float:
 
 
 def steps(moments: Iterable[MomentOdds]) -> list[Swing]:
-    """Return the stretches between neighbouring moments, in order."""
+    """Return the stretches of the match between neighbouring moments, in order."""
     ordered = sorted(moments, key=lambda moment: moment.beat)
     return [Swing(*pair) for pair in pairwise(ordered)]
 

@@ -1,4 +1,7 @@
-"""The part of a record before a fork, copied with the fork's own names in it."""
+"""The part of a record before a fork, copied for the fork's own record.
+
+The copy has the fork's match id, and the court's name "fork".
+"""
 
 import hashlib
 from dataclasses import dataclass
@@ -36,7 +39,7 @@ class ForkSource:
 
     @property
     def last_beat(self) -> int:
-        """The last beat that was answered."""
+        """The last beat of the record from which a fork can go on."""
         return last_beat(self.record)
 
     @property
@@ -46,7 +49,7 @@ class ForkSource:
 
     @cached_property
     def hash(self) -> str:
-        """Hash of the messages, hexadecimal; packing segments into one file does not change it."""
+        """Hash of the messages, hexadecimal; it does not change when segments become one file."""
         digest = hashlib.blake2b(digest_size=16)
         for topic, beat, data in self.messages:
             digest.update(f"{topic} {beat} {len(data)}\n".encode())
@@ -58,7 +61,7 @@ def read_source(path: Path) -> ForkSource:
     """Read a record that is to be forked.
 
     Args:
-        path: a packed file, or any segment of a match.
+        path: the file of a finished record, or any segment of one.
 
     Raises:
         UserError: if it can't be read, or if a part of it is lost or damaged.
@@ -72,7 +75,7 @@ def read_source(path: Path) -> ForkSource:
 
 @dataclass(frozen=True)
 class Stem:
-    """A record up to the beat before a fork, with the fork's own names in it."""
+    """A record up to the beat before a fork, copied for the fork's own record."""
 
     record: Record
     """The record; its header, sheets and results name the fork, all else is as recorded."""
@@ -83,7 +86,7 @@ class Stem:
 
 
 def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | None = None) -> Stem:
-    """Return the part of a record that a fork goes on from.
+    """Return the part of a record before a fork, copied for the fork's own record.
 
     Args:
         source: the record.
@@ -125,7 +128,7 @@ def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | 
 
 
 def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
-    """Return the messages before a beat with the fork's names, without the court's health."""
+    """Return the record's messages before a beat, with the fork's match id and without health."""
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

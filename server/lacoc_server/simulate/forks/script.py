@@ -24,7 +24,9 @@ class Script(msgspec.Struct, frozen=True):
 
 
 def of_script(file: Script, seat: int) -> Callable[[], Press]:
-    """Return a player that presses the keys of a script; its times count from the fork's start.
+    """Return a function that makes a new player of a fork's seat: it presses a script's keys.
+
+    The times in the script count from the fork's start.
 
     Args:
         file: the script.

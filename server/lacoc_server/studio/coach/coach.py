@@ -1,4 +1,7 @@
-"""Runs a search of the coach: ranks the numbers, searches, undoes changes, and tells progress."""
+"""Runs a search of the coach for a better table, and reports its progress.
+
+It ranks the numbers of the table, searches, and undoes changes that hardly help.
+"""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -72,7 +75,7 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
 def task_of(
     robot: RobotSpec, gait: Gait, key: int, goal: Goal, sequences: Sequence[Sequence[int]] | None
 ) -> Task:
-    """Make the task to improve a key of level B.
+    """Make the coach's task: to improve the table of a key of level B.
 
     Args:
         robot: the robot.
@@ -192,7 +195,10 @@ def _better(
     seed: int,
     tell: Tell,
 ) -> Iterator[Improved]:
-    """Search, then undo changes that hardly help; yield each round's result."""
+    """Search for a better table, then undo changes that hardly help.
+
+    Yield the best table so far after each round of trials.
+    """
     begin_s = time.monotonic()
 
     def passed_s() -> float:
@@ -215,7 +221,7 @@ def _better(
 def _follow(
     trials: Trials, tell: Tell, stage: str, expected: int, best: float | None = None
 ) -> None:
-    """Tell the progress of a stage from now on, by the number of its trials.
+    """From now on report the progress of one stage of a search, by its number of trials.
 
     Args:
         trials: counts the trials.

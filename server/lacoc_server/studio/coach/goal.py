@@ -1,4 +1,4 @@
-"""Scores a walk for a goal."""
+"""Scores how well a robot walks or turns, depending on what its key is for."""
 
 from lacoc_server.trial.figures import Figures
 from lacoc_server.trial.reasons.goal import Goal

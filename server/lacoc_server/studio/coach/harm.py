@@ -1,4 +1,4 @@
-"""Finds figures of a page that a new table makes worse, so that it is not called better."""
+"""Finds the figures of a walk that a new table makes worse, so that the coach counts them too."""
 
 import math
 from typing import NamedTuple
@@ -14,7 +14,7 @@ _WALKS_SCORE = 15.0
 
 
 class ShownFigure(NamedTuple):
-    """A figure that a page shows, and how a loss of it is weighed."""
+    """A figure of a walk that pages show, and how much it counts if a new table makes it worse."""
 
     name: str
     more: int
@@ -41,7 +41,7 @@ _TURN = (ShownFigure("drift_deg_s", 1, 0.05, 3.0), *_ALWAYS)
 
 
 def worse(before: Figures, after: Figures, goal: Goal) -> tuple[str, ...]:
-    """Return the names of the figures that became worse by more than their `step`."""
+    """Return the names of the figures that became clearly worse: by more than their `step`."""
     return tuple(one.name for one, loss in _losses(before, after, goal) if loss > one.step)
 
 

@@ -73,7 +73,7 @@ def improve(
 def _few(
     search: Search, matters: Sequence[Matter], rough: Score, most: int, is_over: IsOver
 ) -> Iterator[Improved]:
-    """Change one number after another, always the one that helps most."""
+    """Change one number after another, always the one that helps most; yield each better table."""
     cells = [one.number for one in matters[:_FEW]]
     changed: list[int] = []
     while len(changed) < most:

@@ -79,7 +79,10 @@ def repair(trials: Trials) -> Iterator[Repaired]:
 
 
 def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
-    """Return the first (most probable) table and the best others, in the given order."""
+    """Choose the tables to try exactly: the first, most probable one, and the best others.
+
+    They keep their order.
+    """
     ranked = sorted(range(1, len(tables)), key=lambda index: -scores[index])
     return [tables[index] for index in sorted([0, *ranked[: _EXACT - 1]])]
 

@@ -106,7 +106,9 @@ class Trials:
         return self._scores(tables, _ROUGH_WAY)
 
     def walks(self, tables: Sequence[Angles], *, rough: bool = False) -> list[Figures]:
-        """Return the figures of walks, tried as in `exact`; if `rough` is true, as in `rough`.
+        """Let the robot walk with each table; return the figures.
+
+        The contest's physics is used; if `rough`, larger steps of physics.
 
         Raises:
             Stopped: if the search was stopped.
@@ -115,7 +117,7 @@ class Trials:
         return self._walks(tables, _ROUGH_WAY if rough else _EXACT_WAY)
 
     def spare(self, table: Angles, *, everything: bool) -> None:
-        """From now on lower the score of tables with a shown figure that is worse than `table`'s.
+        """From now on lower the score of tables with which a figure is worse than with this one.
 
         Args:
             table: the table whose figures are compared.
@@ -130,7 +132,7 @@ class Trials:
         self._everything = everything
 
     def figures(self, tables: Sequence[Angles]) -> list[Figures]:
-        """Return the figures of walks with the contest's physics, also after a stop.
+        """Let the robot walk with each table, also after a stop of the search; return the figures.
 
         These trials are not counted.
 

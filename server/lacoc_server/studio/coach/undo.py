@@ -68,12 +68,15 @@ def _tried(rough: Score, own: Angles, table: Angles) -> list[int]:
 
 
 def _back(own: Angles, table: Angles, numbers: Sequence[int]) -> Angles:
-    """Return a table with the student's own angles in the cells with these numbers."""
+    """Return a table with the student's own angles put back in the cells with these indices."""
     mine = set(numbers)
     return tuple(own[i] if i in mine else angle for i, angle in enumerate(table))
 
 
 def _spread(low: int, high: int) -> list[int]:
-    """Return up to `_AT_ONCE` counts in equal steps, above `low` and up to `high`."""
+    """Return how many changes each table of a round undoes: counts in equal steps.
+
+    They are above `low` and at most `high`; there are at most `_AT_ONCE`.
+    """
     steps = min(_AT_ONCE, high - low)
     return [low + (high - low) * step // steps for step in range(1, steps + 1)]

@@ -29,14 +29,16 @@ _EQUAL_MM_S = 5.0
 
 
 class MapPlace(NamedTuple):
-    """A cell of the map: index along each axis."""
+    """A cell of a map of gaits: index along each axis."""
 
     speed: int
     arousal: int
 
 
 class MapGrid(NamedTuple):
-    """The axes of a map; both begin at 0, and their last cells have no upper end.
+    """The axes of a map of gaits: forward speed, and arousal (how excited a gait looks).
+
+    Both axes begin at 0, and their last cells have no upper end.
 
     The calmest cell is twice as wide as the others, because its lower half would stay almost empty:
     a robot that lifts its feet at all is hardly ever so calm.
@@ -71,7 +73,7 @@ class MapGrid(NamedTuple):
 
 
 class Elite(NamedTuple):
-    """The best gait of a cell of the map."""
+    """The best gait of a cell of a map of gaits."""
 
     angles_deg: Angles
     figures: Figures
@@ -89,7 +91,7 @@ def arousal_mm_s(figures: Figures) -> float | None:
 
 
 def grid_of(robot: RobotSpec, own: Figures) -> MapGrid:
-    """Make the axes of a robot's map, so that its own gait lies in it.
+    """Make the axes of a map of a robot's gaits, so that the student's own gait lies in it.
 
     Args:
         robot: the robot.
@@ -119,13 +121,16 @@ def is_straight(figures: Figures) -> bool:
 
 
 def worth(own: Angles, angles_deg: Angles, figures: Figures) -> tuple[float, float]:
-    """Return the value by which gaits of a cell compete: rounded score, then the smaller change."""
+    """Return the worth of a gait; of the gaits for one cell of the map the one worth most is kept.
+
+    First the rounded score counts, then how little the gait differs from the student's own.
+    """
     change_deg = sum(abs(a - b) for a, b in zip(own, angles_deg, strict=True))
     return math.floor(goal_score(figures, Goal.FORWARD) / _EQUAL_MM_S), -float(change_deg)
 
 
 class Archive:
-    """The best gaits of all cells.
+    """A map of gaits: keeps the best gait of each cell.
 
     Args:
         own: the student's own table.
@@ -138,7 +143,7 @@ class Archive:
         self._own = own
 
     def would_take(self, angles_deg: Angles, figures: Figures) -> bool:
-        """Return whether a gait is sound, straight and better than the one in its cell."""
+        """Return whether a gait is sound, straight and better than the gait in its map cell."""
         place = self.grid.place(figures)
         if place is None or not (is_sound(figures) and is_straight(figures)):
             return False
@@ -146,7 +151,7 @@ class Archive:
         return there is None or there.worth < worth(self._own, angles_deg, figures)
 
     def add(self, angles_deg: Angles, figures: Figures) -> bool:
-        """Keep a gait if it is better than the one in its cell; return whether it was kept."""
+        """Keep a gait if it is better than the gait in its map cell; return whether it was kept."""
         place = self.grid.place(figures)
         if place is None or not self.would_take(angles_deg, figures):
             return False
@@ -154,7 +159,7 @@ class Archive:
         return True
 
     def empty_beside(self, place: MapPlace) -> int:
-        """Count the empty cells beside a cell: at most four."""
+        """Count the empty cells beside a cell of the map: at most four."""
         beside = [
             MapPlace(place.speed + by, place.arousal + to)
             for by, to in ((1, 0), (-1, 0), (0, 1), (0, -1))

@@ -1,4 +1,7 @@
-"""Makes the messages that describe a map of gaits, or variants of a gait."""
+"""Makes the messages that describe a map of gaits, or six gaits to choose from.
+
+A map of gaits is a grid that keeps the best gait of each cell.
+"""
 
 from collections.abc import Iterator
 
@@ -18,7 +21,7 @@ _SEEN = 0.4
 
 
 def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
-    """Make the message that describes a map."""
+    """Make the message that describes a map of gaits."""
     grid, styles = found.archive.grid, Styles(task.robot, task.table)
     return MapReply(
         key=key,
@@ -40,7 +43,7 @@ def map_reply(task: Task, key: int, found: Mapped) -> MapReply:
 
 
 def variants_reply(task: Task, key: int, found: Varied) -> VariantsReply:
-    """Make the message that describes variants."""
+    """Make the message with the gaits from which a student can choose."""
     styles = Styles(task.robot, task.table)
     return VariantsReply(
         key=key,
@@ -51,7 +54,7 @@ def variants_reply(task: Task, key: int, found: Varied) -> VariantsReply:
 
 
 def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> OtherGait:
-    """Describe a gait, and how it differs from the task's."""
+    """Describe a gait that was found, and how it differs from the student's own."""
     own = task.table.angles_deg
     return OtherGait(
         table=table,

@@ -1,4 +1,4 @@
-"""Fills a map of gaits, beginning with a student's own table."""
+"""Fills a map of gaits (a grid with the best gait of each cell), from a student's own table."""
 
 import time
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ _HOPEFULS = 6
 
 
 class Mapped(NamedTuple):
-    """A map when its search has ended, perhaps with empty cells."""
+    """The map of gaits at the end of a search; some of its cells may be empty."""
 
     archive: Archive
     own: Figures
@@ -40,7 +40,7 @@ class Mapped(NamedTuple):
 
 
 def map_gaits(trials: Trials, seconds: float, seed: int, tell: Tell) -> Mapped:
-    """Search for gaits of all speeds and arousals.
+    """Fill a map of gaits: search for gaits of all speeds, from calm to excited ones.
 
     Args:
         trials: tries tables for the task.
@@ -83,7 +83,7 @@ def map_gaits(trials: Trials, seconds: float, seed: int, tell: Tell) -> Mapped:
 def fill(
     archive: Archive, styles: Styles, own: Angles, trials: Trials, seed: int
 ) -> Iterator[None]:
-    """Fill a map, one round after another, for ever; yield after each.
+    """Fill a map of gaits, one round of trials after another, without an end; yield after each.
 
     A rough trial finds the tables that may be better than those in the map. Only these are tried
     exactly, and only an exact trial puts a table into the map.
@@ -112,7 +112,7 @@ def fill(
 
 
 def _offspring(archive: Archive, styles: Styles, own: Angles, rng: np.random.Generator) -> Angles:
-    """Make a new table from one or two of the map; from `own` while the map is empty."""
+    """Make a new table from one or two tables of a map of gaits; from `own` while it is empty."""
     parents = [elite.angles_deg for elite in archive.elites.values()] or [own]
     weights = np.array([archive.empty_beside(place) + _FULL for place in archive.elites] or [1.0])
 

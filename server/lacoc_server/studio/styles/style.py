@@ -28,7 +28,7 @@ _ROUNDS, _DAMPING = 5, 0.05
 
 
 class Way(StrEnum):
-    """A visible way in which a walk can change; this is its change in the positive direction."""
+    """A visible way in which a walk can change. Each value names its positive direction."""
 
     HEIGHT = "height"
     """The body is higher above the floor."""
@@ -142,12 +142,12 @@ class Styles:
         return np.array(np.radians(angles_deg), np.float64).reshape(self._rows, -1)
 
     def _tips_m(self, rows: Floats) -> Floats:
-        """Return the positions of the tips in the body frame: (rows, legs, 3) [m]."""
+        """Return the positions of the legs' tips in the body frame: (rows, legs, 3) [m]."""
         tips = [[leg[3] for leg in self._robot.points(tuple(row))] for row in rows]
         return np.array(tips, np.float64)
 
     def _reached(self, rows: Floats, wanted_m: Floats) -> Floats:
-        """Find angles (rows, joints) [rad] that put the tips where wanted, starting from `rows`."""
+        """Find angles (rows, joints) [rad] that put the leg tips at `wanted_m`; start at `rows`."""
         legs, step = len(self._robot.legs), 1e-5
         damping = (_DAMPING * self._long_m) ** 2 * np.eye(3)
         for _ in range(_ROUNDS):

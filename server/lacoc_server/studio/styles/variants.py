@@ -35,14 +35,14 @@ _PERIOD, _SPEED = 1.25, 1.35
 
 
 class Variant(NamedTuple):
-    """A gait to choose."""
+    """One of up to six gaits from which a student can choose."""
 
     angles_deg: Angles
     figures: Figures
 
 
 class Varied(NamedTuple):
-    """The variants of a round."""
+    """The result of a student's request for gaits to choose from."""
 
     variants: list[Variant]
     """The six that differ most; fewer if the search was stopped or too few walked."""
@@ -58,7 +58,7 @@ def vary(
     round_: int,
     tell: Tell,
 ) -> Varied:
-    """Find six variants of the parents that walk upright.
+    """Breed six gaits from the parents that differ visibly and walk upright.
 
     Args:
         trials: tries tables for the task.

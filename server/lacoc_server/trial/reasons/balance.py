@@ -1,4 +1,4 @@
-"""Finds when other parts than feet carry the robot or balance is lost, and the number to blame."""
+"""Finds when the feet do not carry the robot or it loses balance, and which number causes this."""
 
 import math
 from collections.abc import Iterator
@@ -44,7 +44,9 @@ def balance(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def _high_foot(seen: SeenTrial) -> TableCell | None:
-    """Find the number that keeps a foot high in the posture in which the body rests most.
+    """Find the number of the table that keeps a foot high while the body rests on the floor.
+
+    It is searched in the posture in which the body rests most.
 
     Only the lower half of the feet is expected to carry the body. If these feet are low enough,
     the body rests on the floor for another reason: then return None.
@@ -73,7 +75,7 @@ def _high_foot(seen: SeenTrial) -> TableCell | None:
 
 
 def _foot_in_the_air(seen: SeenTrial) -> TableCell | None:
-    """Find the number that lifts the foot on the side to which the robot falls."""
+    """Find the number of the table that lifts the foot on the side to which the robot falls."""
     walk, form, part = seen.walk, seen.form, seen.part
     down = walk.down[part]
     contact_w_m, centre_w_m = walk.contact_w_m[part], walk.centre_w_m[part]
@@ -106,5 +108,5 @@ def _foot_in_the_air(seen: SeenTrial) -> TableCell | None:
 
 
 def _most(seen: SeenTrial, ticks: Bools) -> int:
-    """Return the index of the posture that is the target in most of the given measured ticks."""
+    """Return the index of the posture to which the robot moves in most of the given ticks."""
     return int(np.bincount(seen.walk.posture[seen.part][ticks], minlength=1).argmax())

@@ -114,7 +114,7 @@ def _rank(mistake: Repair) -> float:
 
 
 def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Say that physics stopped, or that the robot tipped over."""
+    """Yield a finding if MuJoCo reported a fault, or the robot tipped over."""
     if seen.walk.fault is not None:
         yield TrialFinding(100, say("explain.fault", why=seen.walk.fault))
     elif seen.figures.upright < _TIPPED:
@@ -123,7 +123,7 @@ def _ended(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def _way(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Yield findings on motion: the robot hardly moves, goes back, turns, slides, walks."""
+    """Yield findings on how the robot moves: hardly, backward, by turning, by sliding, or well."""
     figures = seen.figures
     if not figures.cycles:
         return

@@ -41,7 +41,7 @@ class TableCell(NamedTuple):
 
 
 class KeyForm:
-    """The table of a key.
+    """The table of a key, and how far its numbers differ between legs that should move alike.
 
     Args:
         robot: the robot.
@@ -108,7 +108,10 @@ class KeyForm:
 
     @property
     def paired(self) -> tuple[int, ...]:
-        """Levels at which partners and mates should have equal numbers; in a turn not the roots."""
+        """Joints of a leg (0, 1, 2) whose numbers should equal those of partners and mates.
+
+        If the key is for turning, the roots (0) are left out.
+        """
         return (0, 1, 2) if self.goal is Goal.FORWARD else (1, 2)
 
     @cached_property
@@ -150,7 +153,10 @@ class KeyForm:
 
     @cached_property
     def thrust_m2(self) -> list[float]:
-        """For each leg the area that its foot encircles [m2]; positive: it pushes to the goal."""
+        """For each leg the area that its foot encircles [m2].
+
+        It is positive if the leg pushes the robot in the direction that the key is for.
+        """
         return [
             area * push
             for area, push in zip(
@@ -167,7 +173,7 @@ class KeyForm:
         return tuple(tuple(map(float, row)) for row in rows)
 
     def partner(self, cell: TableCell) -> TableCell:
-        """Return the partner of a number; without halves, the first mate of its leg."""
+        """Return the cell of a number's partner; if the cycle has no halves, that of a mate."""
         if self.half:
             posture = (cell.posture + self.half) % self.postures
             return TableCell(posture, cell.level, self.legs - 1 - cell.leg)

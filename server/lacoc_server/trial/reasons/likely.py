@@ -1,4 +1,4 @@
-"""Finds the mistake that a table probably has, from the table alone."""
+"""Finds the mistake that a table probably has, from its numbers alone, without a trial."""
 
 from typing import NamedTuple
 
@@ -61,12 +61,12 @@ def weigh_repairs(form: KeyForm) -> list[Weighed]:
 
 
 def likely_mistake(form: KeyForm) -> Repair | None:
-    """Return the most probable sure repair of a table; None if no repair is sure."""
+    """Return the most probable of the repairs that are sure enough to be told; None: none is."""
     return next((one.repair for one in weigh_repairs(form) if one.is_sure), None)
 
 
 def _strange_deg(form: KeyForm) -> float:
-    """Return the oddness of a table, plus `_WAY` for each degree that its joints turn."""
+    """Return how strange a table is [deg]: how much like legs differ, and how far joints turn."""
     angles = form.angles_deg
     way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())
     return form.oddness_deg + _WAY * way_deg

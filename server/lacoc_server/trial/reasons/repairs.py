@@ -66,7 +66,7 @@ def _cells(form: KeyForm) -> Iterator[Repair]:
 
 
 def _legs(form: KeyForm) -> Iterator[Repair]:
-    """Yield repairs of a joint or a whole leg: its partner's numbers, other sign or other time."""
+    """Yield repairs of a joint or a leg: the opposite leg's numbers, other signs, another time."""
     angles, odd = form.angles_deg, form.odd_deg
     for leg in range(form.legs):
         if odd[:, :, leg].max() <= 0:
@@ -184,7 +184,7 @@ def _halves(form: KeyForm) -> Iterator[Repair]:
 
 
 def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Phrase:
-    """Make the part of a sentence that compares a number with its partner's."""
+    """Make the part of a sentence that compares a number with that of the opposite leg."""
     held = form.partner(cell) if partner is None else partner
     return say(
         "explain.odd",
@@ -196,7 +196,10 @@ def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Ph
 
 
 def _partners(form: KeyForm, cell: TableCell) -> Iterator[TableCell]:
-    """Yield the cells that should have the same number: the partner, then (not for roots) mates."""
+    """Yield the cells that should have the same number as a cell: the opposite leg's, then mates'.
+
+    For a Root, the mates are left out.
+    """
     if form.half and cell.level in form.paired:
         yield form.partner(cell)
     if cell.level > 0:
@@ -206,7 +209,7 @@ def _partners(form: KeyForm, cell: TableCell) -> Iterator[TableCell]:
 
 
 def _alike(form: KeyForm, cell: TableCell, angle_deg: float) -> TableCell | None:
-    """Find a partner whose angle is about `angle_deg`; None if no partner has such an angle."""
+    """Find, among cells that should have the same number, one with about this angle; None: none."""
     near = (
         one
         for one in _partners(form, cell)

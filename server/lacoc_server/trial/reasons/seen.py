@@ -14,7 +14,7 @@ _MOSTLY = 0.5
 
 
 class TrialFinding(NamedTuple):
-    """A situation that a rule found."""
+    """A situation in a trial that a rule found, with the sentence that explains it."""
 
     rank: float
     """The finding with the highest rank is told first."""
@@ -26,7 +26,7 @@ class TrialFinding(NamedTuple):
 
 @dataclass(frozen=True)
 class SeenTrial:
-    """The trial that the rules look at."""
+    """A trial with its figures and its key's table, for the rules that explain it."""
 
     robot: RobotSpec
     walk: Walk

@@ -59,7 +59,7 @@ class Knockout(DrawnAtOnce):
 
 
 def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
-    """Yield the decided matches that settle two places next to each other, such as the final."""
+    """Yield the decided matches that settle the winner's place, too, such as the final."""
     for match in matches:
         if match.pairing.winner_place and match.state == "decided":
             yield match
@@ -215,7 +215,10 @@ def _losers(stage: Stage, last: int) -> Iterator[Pairing]:
 
 
 def _turned(falling: Sequence[AnySource], number: int) -> list[AnySource]:
-    """Reorder the losers of a round: reverse them after even rounds, swap halves after odd ones."""
+    """Reorder the losers of a round of the winners' bracket, so that teams seldom meet again.
+
+    Losers of an even round are reversed; of an odd round, the two halves are swapped.
+    """
     half = len(falling) // 2
     return [*reversed(falling)] if number % 2 == 0 else [*falling[half:], *falling[:half]]
 

@@ -1,8 +1,8 @@
 """Sequential: everybody meets everybody again and again, until the first places are decided.
 
 In a lap everybody meets everybody once. After each lap a test says whether the teams at the first
-places are stronger than the next ones, with the chosen confidence. If they are, or if the most laps
-are played, the stage is over. So a clear order costs few games, and a close one many.
+places are stronger than the next ones, with the chosen confidence. If they are, or if the largest
+number of laps is played, the stage is over. So a clear order needs few games, and a close one many.
 """
 
 import math

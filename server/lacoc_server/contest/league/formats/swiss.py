@@ -221,7 +221,7 @@ def _legal(pairs: Iterable[tuple[SwissTeam, ...]], players: Sequence[SwissTeam])
 
 
 def faults(pair: Sequence[SwissTeam]) -> tuple[int, int, int]:
-    """Count what is wrong with a pair: met before, a second bye, both due the same side."""
+    """Count what is wrong with a pair: met before; a second bye; both teams need the same side."""
     if len(pair) == 1:
         return 0, int(pair[0].had_bye), 0
     one, other = pair

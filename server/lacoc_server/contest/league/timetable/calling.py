@@ -154,5 +154,5 @@ def absent(call: Called, seen: SeenCourt | None, now_ms: int) -> tuple[str, ...]
 
 
 def wanted(contest: Contest, seen: Mapping[str, SeenCourt]) -> Iterable[Called]:
-    """Return the running calls that their courts do not have yet, so that the office sends them."""
+    """Return the calls that the office must send: their courts do not have the games yet."""
     return [call for call in contest.running if seen.get(call.court, SeenCourt(0)).call != call.id]

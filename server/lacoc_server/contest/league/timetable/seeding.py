@@ -15,7 +15,7 @@ Pairs = tuple[tuple[str, str], ...]
 
 
 class _Apart(NamedTuple):
-    """What `set_apart` needs to keep teams of a stage apart."""
+    """Which teams of a stage should not meet first, and which places of the seeding meet first."""
 
     meet: tuple[tuple[int, int], ...]
     """Pairs of places in the seeding, from 0, whose teams are certain to meet."""
@@ -25,16 +25,16 @@ class _Apart(NamedTuple):
     """Pairs of teams that met in the stage before; empty: they are not kept apart."""
 
     def clash(self, order: tuple[str, ...]) -> Pairs:
-        """Return the pairs that would meet first with this order, and should not."""
+        """Return the pairs of teams that would meet first in this order, but should not."""
         pairs = ((order[one], order[other]) for one, other in self.meet)
         return tuple(_clashing(pairs, dict(self.clubs), self.met))
 
 
 def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
-    """Return the teams from which those of a stage are taken, in the order of the seeding.
+    """Return the teams that a stage can have, the best first.
 
-    It is the ranking of the stage that it follows, or the order in which teams entered. Teams that
-    have left can be among them.
+    Their order is the ranking of the stage before. If there is none, it is the order in which they
+    entered. Teams that have left can be among them.
     """
     before = {view.name: view for view in contest.stages}
     if plan.after in before:
@@ -71,7 +71,7 @@ def met_before(contest: Contest, plan: Planned) -> frozenset[frozenset[str]]:
 
 
 def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
-    """Return the pairs that are certain to meet, and have met in the stage before."""
+    """Return the pairs of teams that are certain to meet, and that met in the stage before."""
     met = met_before(contest, plan)
     return tuple(pair for pair in first_meetings(plan, how, order) if frozenset(pair) in met)
 
@@ -79,10 +79,11 @@ def meets_again(contest: Contest, plan: Planned, how: Format, order: tuple[str, 
 def kept_apart(
     contest: Contest, plan: Planned, how: Format, order: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return an order of teams in which fewer of those to keep apart are certain to meet.
+    """Reorder teams, so that fewer of them meet first whom the plan of the stage keeps apart.
 
     A plan may keep apart teams of one club (`apart`), and teams that met before (`met_apart`). The
-    order changes as little as possible: after groups it is the crossing A1-B2, B1-A2.
+    order changes as little as possible. After groups A and B, for example, the first of each meets
+    the second of the other one.
     """
     return _set_apart(_apart(contest, plan, how, len(order)), order)
 
@@ -90,11 +91,11 @@ def kept_apart(
 def moved_apart(
     contest: Contest, plan: Planned, how: Format, entries: tuple[str, ...]
 ) -> dict[str, Phrase]:
-    """Return, by team, a phrase that says why its seed differs from its rank: pairs kept apart.
+    """Say, for each team whose seed differs from its rank, which pairs this keeps apart.
 
-    It names the pairs that the team itself would be in. If the team only made room for others, it
-    names all pairs that were kept apart. The result is empty if the order is not the plan's: a lot
-    or the organiser made it, or the ranking was corrected since.
+    The phrase of a team names the pairs that it would be in. If the team only made room for others,
+    the phrase names all pairs that were kept apart. The result is empty if the order is not the
+    one that follows from the plan: a lot or the organiser made it, or the ranking was corrected.
 
     Args:
         contest: the contest.
@@ -133,7 +134,7 @@ def _set_apart(kept: _Apart, order: tuple[str, ...]) -> tuple[str, ...]:
 def _clashing(
     pairs: Iterable[tuple[str, str]], club_of: Mapping[str, str], met: frozenset[frozenset[str]]
 ) -> Iterator[tuple[str, str]]:
-    """Yield each pair that should not meet, once for each reason: the club, an earlier match."""
+    """Yield the pairs that should not meet, once for each reason: one club, or an earlier match."""
     for one, other in pairs:
         if one in club_of and club_of[one] == club_of.get(other):
             yield one, other

@@ -1,7 +1,8 @@
 """Where each team plays, or what it waits for; pure.
 
-The estimate of when a team plays gives the open matches to the courts in the order of the schedule.
-It assumes that every game takes as long as games took so far, so it is right only on average.
+To estimate when a team plays, the matches that are still to come are dealt out to the courts in the
+order of the schedule. Every game is assumed to take as long as games took so far, so the estimate
+is right only on average.
 """
 
 from bisect import bisect_left, insort
@@ -388,7 +389,7 @@ def starts(
 
 
 def _needed(one: Foreseen, ends: Mapping[str, int]) -> Iterator[str]:
-    """Yield the pairings of those matches in `ends` that must end before a match begins.
+    """Yield the pairings of the matches that must end before a match begins, if `ends` has them.
 
     If rounds are drawn one by one, each round waits for all earlier ones.
     """
@@ -434,7 +435,7 @@ def may_come(contest: Contest, team: str) -> bool:
 
 
 def _rounded_s(time_ms: int) -> int:
-    """Round up to seconds in coarse steps, so that an estimate does not change at each look."""
+    """Return a time in seconds, rounded up in coarse steps; so an estimate seldom changes."""
     return max(0, -(-time_ms // (1000 * _STEP_S)) * _STEP_S)
 
 
