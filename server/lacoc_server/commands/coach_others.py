@@ -1,4 +1,4 @@
-"""Prints and writes the map of gaits, or the variants, that `lacoc coach` found."""
+"""Prints and writes the gaits that `lacoc coach` found: a map of gaits, or six to choose from."""
 
 import contextlib
 from collections.abc import Mapping, Sequence
@@ -48,7 +48,7 @@ def map_table(reply: MapReply) -> Table:
 
 
 def variants_table(reply: VariantsReply) -> Table:
-    """Make a table of variants: how each looks, its speed, its period and its foot clearance."""
+    """Make a table of gaits to choose from: their looks, speed, period and foot clearance."""
     table = screen.table(
         say("coach.variant"),
         say("coach.looks"),
@@ -109,7 +109,7 @@ def written(task: Task, gait: Gait, digit: int, angles: Angles) -> bytes:
 
 
 def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int) -> list[Angles]:
-    """Read the tables from which new variants are bred.
+    """Read the tables of gaits that a student kept, from which new gaits are bred.
 
     Raises:
         UserError: if a file can't be read, or its key has another sequence than the task's.

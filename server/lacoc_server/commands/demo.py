@@ -162,7 +162,7 @@ class _DemoCourt:
         return event
 
     def record(self, folder: Path) -> Path:
-        """Return the path of the match's packed record."""
+        """Return the path that the record of the finished match has."""
         return packed_path(folder, self._match_id)
 
     def _listen(self, lines: IO[str]) -> None:

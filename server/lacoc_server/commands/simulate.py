@@ -178,12 +178,13 @@ def simulate_command(
 
 
 def _teams(names: Mapping[str, str]) -> dict[str, str]:
-    """Return for each player the name in all tables: the team's name, or the player's own words.
+    """Return the name of each player for the printed tables.
 
-    The player's words on the command line are used if two players have the same team's name.
+    It is the name of the player's team. If two players have the same, it is what the command line
+    has for the player.
 
     Args:
-        names: the team's name of each player; players as on the command line.
+        names: the team's name of each player, by what the command line has for the player.
     """
     often = Counter(map(same_name, names.values()))
     return {

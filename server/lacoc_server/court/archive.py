@@ -1,6 +1,7 @@
-"""The records of finished matches: closed and packed on another thread than the court's loop.
+"""Closes and packs the records of finished matches, while the court goes on with the next match.
 
-A disk may need seconds until it has stored what was written. By then the next match is open.
+To pack a record is to make one file of its segments. A disk may need seconds until it has stored
+what was written. So this is done on another thread, and in another process.
 """
 
 import subprocess
@@ -14,7 +15,7 @@ from lacoc_shared.record.recorder import Recorder
 
 
 class RecordArchive:
-    """Closes and packs the records of one court.
+    """Closes and packs the records of one court; to pack is to make one file of all segments.
 
     Args:
         folder: folder of the records; None: nothing is recorded.
@@ -30,7 +31,9 @@ class RecordArchive:
         self._packing: list[subprocess.Popen[bytes]] = []
 
     def pack(self, match_id: str) -> None:
-        """Pack the records of finished matches that an earlier court of this name left.
+        """Make one file of each record that an earlier court of this name left in segments.
+
+        Only matches that are finished are packed.
 
         Args:
             match_id: the open match; the log names it if something can't be packed.
@@ -38,7 +41,9 @@ class RecordArchive:
         self._aside.submit(self._pack, match_id)
 
     def take(self, match_id: str, writer: Recorder | None) -> None:
-        """Write the end of a match's record now; close and pack the record on another thread.
+        """Write the end of a match's record now; then close it and make one file of its segments.
+
+        The second part is done on another thread.
 
         Do nothing if the match has no record.
         """
@@ -48,7 +53,7 @@ class RecordArchive:
         self._aside.submit(self._put_away, match_id, writer)
 
     def close(self) -> None:
-        """Wait until all records are closed and packed."""
+        """Wait until all records of finished matches are closed, each in one file."""
         self._aside.shutdown()
         for packing in self._packing:
             packing.wait()
@@ -62,9 +67,9 @@ class RecordArchive:
         self._pack(match_id)
 
     def _pack(self, match_id: str) -> None:
-        """Pack the records of all finished matches of the court, in a separate process.
+        """Make one file of the segments of each finished match's record, in a separate process.
 
-        A record that can't be packed now is tried again when the next match ends or the court is
+        If this fails for a record, it is tried again when the next match ends or the court is
         started again.
         """
         if self._folder is None:

@@ -62,7 +62,7 @@ class Preparation:
         self._aside = aside
 
     def __call__(self, assign: Assign) -> Callable[[], Prepared | Refusal | None]:
-        """Begin to prepare a match; the returned function returns None until that is done."""
+        """Begin to prepare a match; return a function that returns None until it is prepared."""
         future = self._aside(lambda: self._prepare(assign))
         return lambda: future.result() if future.done() else None
 
@@ -97,12 +97,12 @@ class Preparation:
 
 
 def staying(joins: Iterable[JoinSeat], assigned: Assigned, seats: Sequence[str]) -> list[JoinSeat]:
-    """Return a join for each team that keeps its seat in the next match.
+    """Return the request to join of each team that keeps its seat in the next match.
 
-    The join has the files that the office assigned; in an open seat the join is unchanged.
+    The request has the files that the office assigned; in an open seat it is unchanged.
 
     Args:
-        joins: the joins of the match before.
+        joins: the requests to join of the match before.
         assigned: the next match.
         seats: names of the seats, in the arena's order.
     """

@@ -35,7 +35,7 @@ class Copying:
         self._aside = aside
 
     def __call__(self, request: Copy) -> Callable[[], Part | None]:
-        """Begin to read a part; the returned function returns None until that is done."""
+        """Begin to read part of a record; return a function that returns None until it is read."""
         future = self._aside(lambda: self._read(request))
         return lambda: future.result() if future.done() else None
 

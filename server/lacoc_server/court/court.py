@@ -265,7 +265,10 @@ class Court:
             return ()
 
     def _moves(self) -> tuple[tuple[str, ...], ...]:
-        """Return what each seat's keys do; begin no trial of a key while two robots may play."""
+        """Return in a word what each key of each seat does, as far as the keys were tried.
+
+        No key is tried while two robots may play.
+        """
         match, trials = self._journal.match, self._key_trials
         if trials is None:
             return ()
@@ -362,7 +365,7 @@ class Court:
         return Journal(match, folder, segment, self._health.measure)
 
     def _close(self) -> None:
-        """Have the archive finish the record of this match."""
+        """Have the archive close the record of this match, and make one file of it."""
         self._archive.take(self.match_id, self._journal.writer)
 
     def _say_health(self, now_s: float) -> None:

@@ -1,4 +1,4 @@
-"""How well a match is held: measured on the wall clock and on the links, beside the match.
+"""How well a court holds a match: measured on the wall clock and on the links of its seats.
 
 Pure: times, counts and beats come in, the verdict comes out. The match is the same at any speed and
 with any loss of messages, so the verdict is not part of it. The record has the verdict as a message
@@ -49,7 +49,10 @@ class _WalkedWay:
         self._corner = None
 
     def go(self, centre_m: tuple[float, float]) -> None:
-        """Add the distance from the last counted point to the robot's position, if long enough."""
+        """Add the way from the last counted point of the path to the robot, if it is long enough.
+
+        Then the robot's present position is the last counted point.
+        """
         step_m = math.dist(self._corner, centre_m) if self._corner else math.inf
         if step_m < _STEP_M:
             return
@@ -105,7 +108,7 @@ class _LinkCounts:
             self._heard, self._counted = heard, 0
 
     def pause(self) -> None:
-        """Drop the unfinished second; count again from the next beat of PLAYING."""
+        """Drop the counts of the unfinished second; count again from the next beat of PLAYING."""
         self._heard = None
 
 

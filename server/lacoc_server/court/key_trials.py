@@ -1,4 +1,4 @@
-"""What the keys of seated robots do: each is tried in physics beside the beats.
+"""Finds what the keys of seated robots do: each is tried in physics, on another thread.
 
 Only pages need it, to name the keys. So it is no part of the match, and no record has it.
 """

@@ -77,7 +77,7 @@ class CourtLog:
             _write(write, self._trouble or say("log.record-again"), kind="record")
 
     def disk(self, match_id: str, trouble: Phrase | None) -> None:
-        """Log a disk error in the record of a finished match, if there was one."""
+        """Log the disk's error in writing the record of a finished match, if there was one."""
         if trouble:
             _write(self._log.warning, trouble, match_id=match_id, kind="record")
 
@@ -88,7 +88,7 @@ class CourtLog:
             _write(self._log.warning, wrong, match_id=match_id, kind="rules")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
-        """Log that a record could not be packed; nothing is lost by that."""
+        """Log that no single file could be made of a record's segments; nothing is lost by that."""
         said = say("log.not-packed", why=str(error))
         _write(self._log.warning, said, match_id=match_id, kind="record")
 

@@ -1,4 +1,4 @@
-"""What would happen if play went on: a copy of the open match is played beside the beats."""
+"""Finds what would happen if play went on: a copy of the match is played on another thread."""
 
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -24,11 +24,13 @@ class Outlooks:
         self._match: Match
 
     def hold(self, match: Match) -> None:
-        """Take note of the open match."""
+        """Take note of the court's match, which a referee may ask about."""
         self._match = match
 
     def __call__(self, request: OutlookRequest) -> Callable[[], Seen | None]:
-        """Begin to play a copy of the match; the returned function returns None until it is done.
+        """Begin to play a copy of the match; return a function that returns its outlook.
+
+        The function returns None until the copy is played.
 
         Call it between two beats: during a beat the state of the match is incomplete.
         """

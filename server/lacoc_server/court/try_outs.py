@@ -1,4 +1,4 @@
-"""Lets players try their keys in the lobby: a player's robot walks alone, beside the beats.
+"""Lets players try their keys in the lobby: a player's robot walks alone, on another thread.
 
 Each request of a page has all keys since its try-out began. The same keys give the same walk, so
 no request needs an earlier one; the kept states only save time. Try-outs are no part of the match,
@@ -28,7 +28,7 @@ _Tried = TryOutReply | Refusal
 
 
 class _WalkMoment(NamedTuple):
-    """A moment of a walk, from which it can go on."""
+    """The state of a walking robot in a tick, from which the walk can go on."""
 
     tick: int
     state: DriveState
@@ -97,7 +97,7 @@ class _LoneRobot:
 
 
 class _SeatedRobot(NamedTuple):
-    """The robot of a seat."""
+    """The robot of a seat, for try-outs."""
 
     entry: Entry
     made: list[_LoneRobot]
@@ -118,13 +118,16 @@ class TryOuts:
         """The robots that were asked for, by index of the seat."""
 
     def hold(self, match: Match) -> None:
-        """Take note of the open match; outside of the lobby no robot is kept."""
+        """Take note of the court's match; forget the try-outs unless the match is in the lobby."""
         self._match = match
         if match.phase is not Phase.LOBBY:
             self._robots.clear()
 
     def __call__(self, seat: int, request: TryOutRequest) -> Refusal | Callable[[], _Tried | None]:
-        """Begin to let a seat's robot walk; the returned function returns None until it is done."""
+        """Begin to let a seat's robot walk; return a refusal, or a function that returns the reply.
+
+        The function returns None until the walk is computed.
+        """
         match = self._match
         entry, arena = match.seats[seat].entry, match.arena
         if match.phase is not Phase.LOBBY or entry is None:

@@ -22,10 +22,10 @@ _REMEMBERED = 32
 
 
 class Weighing:
-    """Weighs in the files of joins; used as a context manager.
+    """Weighs in the files of requests to join a match; used as a context manager.
 
     A stand test takes some tens of milliseconds, longer than a beat. So it runs on a separate
-    thread, one at a time, and its result is kept: a second join with the same robot does not wait.
+    thread, one at a time. Its result is kept: who joins again with the same robot need not wait.
 
     Args:
         join_check: reads the files.
@@ -46,15 +46,15 @@ class Weighing:
     def __call__(
         self, join: Join, held: JoinSeat | None = None
     ) -> tuple[Join, tuple[Phrase, ...]] | None:
-        """Weigh in the files of a join.
+        """Weigh in the files of a request to join.
 
         Args:
-            join: the join as it came.
-            held: the seat's present join; None: nobody has the seat.
+            join: the request as it arrived.
+            held: the request with which the seat was taken; None: nobody has the seat.
 
         Returns:
-            The join with its robot file filled in, and notes on which files it uses; None while the
-            robot is being tried: call again in the next beat.
+            The request with its robot file filled in, and notes on which files are used; None while
+            the robot is being tried: call again in the next beat.
 
         Raises:
             FileRefused: with every mistake of every file, or with what the robot did when it should
@@ -76,7 +76,7 @@ class Weighing:
         return None if mistakes is None else (whole, notes)
 
     def aside(self, do: Callable[[], T]) -> "Future[T]":
-        """Call a function on the thread of the stand tests, after all that wait there already."""
+        """Call a function on the thread of the stand tests, after the calls that wait there."""
         return self._worker.submit(do)
 
     def _tried(self, key: object, test: Callable[[], list[Mistake]]) -> list[Mistake] | None:

@@ -29,7 +29,7 @@ class _DecisionName(msgspec.Struct):
 
 
 class DecisionDesk:
-    """Takes the requests of referees.
+    """Checks the requests of referees at the court's door, and counts those that it refuses.
 
     Args:
         referee_hashes: hashes of the tokens that are accepted.

@@ -81,11 +81,11 @@ _Sealed = TypeVar("_Sealed", SeatRequest, TryOutRequest)
 Later = Callable[[], JoinSeat | Done | Refusal | None]
 """A function for a request that takes longer than a beat: called each beat until it answers."""
 CheckFiles = Callable[[Join, JoinSeat | None], tuple[Join, tuple[Phrase, ...]] | None]
-"""Weighs in the files of a join.
+"""Weighs in the files of a request to join.
 
-It takes the join and the seat's present join, and returns the join with the robot file filled in
-and notes on which files it uses, or None while it needs more time. It raises `FileRefused` for bad
-files.
+It takes the request, and the one with which the seat was taken. It returns the request with the
+robot file filled in, and notes on which files are used; or None while it needs more time. It raises
+`FileRefused` for bad files.
 """
 
 
@@ -139,7 +139,7 @@ class Inbox:
     Args:
         keys: key expressions of the court; seals cover them.
         seats: the seats' names, in the arena's order.
-        check_files: weighs a join's files in.
+        check_files: weighs in the files of a request to join.
         random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
@@ -177,10 +177,10 @@ class Inbox:
         return tuple(seat.name for seat in self._seats)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
-        """Take note of who has the seats of the match, before the beat's joins are checked.
+        """Take note of who has the seats of the match, before requests to join are checked.
 
         Args:
-            held: for each seat the newest join in the match; None: nobody has the seat.
+            held: for each seat the newest accepted request to join; None: nobody has the seat.
             has_begun: whether the match goes on with the files that it began with.
         """
         self._held, self._has_begun = held, has_begun
@@ -223,7 +223,7 @@ class Inbox:
         return inputs
 
     def join(self, index: int, payload: bytes) -> JoinSeat | Refusal | Later:
-        """Check a join; call `seated` once the match has accepted it.
+        """Check a request to join; call `seated` once the match has accepted it.
 
         Returns:
             The input for the match, or a refusal, or a `Later` while the files are weighed in.
@@ -277,7 +277,10 @@ class Inbox:
     def _frozen(
         self, seat: _SeatDoor, join: Join, assigned: AssignedSeat, token_hash: str
     ) -> JoinSeat:
-        """Return a team's join with the name and files that the office fixed, not those it sent."""
+        """Return a team's request to join, with the name and files that the office fixed.
+
+        The name and files that the team sent are ignored.
+        """
         sent = (join.robot, join.postures, join.locomotion)
         differs = any(
             one is not None and (frozen is None or one.data != frozen.data)
@@ -288,10 +291,10 @@ class Inbox:
         return frozen_join(seat.index, assigned, token_hash)
 
     def _weighed(self, seat: _SeatDoor, join: Join, token_hash: str) -> JoinSeat | Refusal | None:
-        """Check a join's files; return None while they are being weighed in.
+        """Weigh in the files of a request to join; return None until that is done.
 
-        Bad files keep no team out of its seat in a match that has begun: the join then has the
-        files of the seat, and notes say what is wrong.
+        Bad files keep no team out of its seat in a match that has begun: the team then gets the
+        files that the seat has, and notes say what is wrong.
         """
         held = self._held[seat.index]
         seat.asking = join.name
@@ -324,7 +327,7 @@ class Inbox:
         )
 
     def seated(self, index: int, notes: tuple[Phrase, ...] = ()) -> Joined:
-        """Give a seat to the sender of an accepted join; the seat's older session ends.
+        """Give a seat to a sender whose request to join was accepted; end the seat's older session.
 
         Args:
             index: the seat.
@@ -342,7 +345,7 @@ class Inbox:
         return Joined(session=number, secret=secret, last_seq=seat.last_seq, notes=told)
 
     def ready(self, index: int, payload: bytes) -> ReadySeat | Refusal:
-        """Check a ready request."""
+        """Check a request that says whether a team is ready."""
         request = self._request(index, payload, "ready", SeatRequest)
         if isinstance(request, Refusal):
             return request
@@ -352,7 +355,7 @@ class Inbox:
         return ReadySeat(index, request.ready)
 
     def leave(self, index: int, payload: bytes) -> LeaveSeat | Refusal:
-        """Check a leave request; call `left` once the match has accepted it."""
+        """Check a request to leave a seat; call `left` once the match has accepted it."""
         request = self._request(index, payload, "leave", SeatRequest)
         return request if isinstance(request, Refusal) else LeaveSeat(index)
 
@@ -374,7 +377,7 @@ class Inbox:
         return request
 
     def left(self, index: int) -> None:
-        """Free a seat after the match has accepted a leave request."""
+        """Free a seat after the match has accepted a request to leave it."""
         self._empty(self._seats[index], Why.LEFT)
 
     def _empty(self, seat: _SeatDoor, why: Why) -> None:

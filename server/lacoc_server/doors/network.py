@@ -159,10 +159,10 @@ class CourtNetwork:
         self._inbox.admit(assigned, staying)
 
     def hold(self, held: Sequence[JoinSeat | None], has_begun: bool) -> None:
-        """Take note of who has the seats of the match, for the joins of the next `poll`.
+        """Take note of who has the seats of the match, for requests to join in the next `poll`.
 
         Args:
-            held: for each seat the newest join in the match; None: nobody has the seat.
+            held: for each seat the newest accepted request to join; None: nobody has the seat.
             has_begun: whether the match goes on with the files that it began with.
         """
         self._inbox.hold(held, has_begun)
@@ -351,7 +351,7 @@ def _empty(ring: Ring) -> list[bytes]:
 
 
 def _serve(desk: RequestQueue, payload: Callable[[], bytes]) -> None:
-    """Answer clients that fetch something, at most 8 in a beat; the others wait."""
+    """Answer at most 8 clients in a beat with data that they fetch, such as the sheet."""
     for _ in range(_FETCHES_PER_BEAT):
         request = desk.take()
         if request is None:

@@ -70,7 +70,7 @@ class _OfficeToken(AnyToken):
 
 
 class OfficeDesk(Generic[T]):
-    """Takes the requests of the office, one at a time.
+    """Checks and answers the requests of the office, one at a time.
 
     Args:
         token_hash: hash of the office's token.

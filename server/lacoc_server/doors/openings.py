@@ -44,7 +44,7 @@ class Openings:
 
 
 def frozen_join(index: int, assigned: AssignedSeat, token_hash: str) -> JoinSeat:
-    """Make the join of a team, with the files that the office fixed before.
+    """Make a team's request to join, with the files that the office fixed before.
 
     Args:
         index: the seat's index.

@@ -18,7 +18,7 @@ from lacoc_shared.words import say
 
 
 class TeamDesk:
-    """Keeps what the office told last, and tells each team its own part of it.
+    """Keeps where all teams play, as the office told last, and tells each team only its own part.
 
     Args:
         teams: where each team plays, by the hash of its token; None: nothing is known until the

@@ -119,7 +119,10 @@ class Journal:
             self.writer.close()
 
     def leave(self) -> None:
-        """Close the record without an end, because the match is not over (see the writers)."""
+        """Close the record without marking its end, because the match is not over.
+
+        Then the match can go on in a new segment. A record that is written as one file is removed.
+        """
         if self.writer is not None:
             self.writer.leave()
 

@@ -127,7 +127,7 @@ class Recorded:
         self._faults = {event.beat: event for event in record.events if event.kind == "fault"}
 
     def move(self, beat: int) -> None:
-        """Go to another beat: from now on, return what is recorded of that one."""
+        """Go to another beat: from now on, return what is recorded of that beat."""
         self.beat = beat
         self.has_frame = beat in self._frames
         if self.has_frame:
@@ -239,7 +239,7 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Begin a new section; return physics that answers the match from the record.
+        """Begin a new section of the match; return physics that answers the match from the record.
 
         Without robots there is no section, and an empty world is returned: nothing moves in it.
         """
@@ -322,7 +322,7 @@ class Judge:
 
 @contextmanager
 def fits_together(record: Record) -> Iterator[None]:
-    """Turn errors from messages that contradict each other into a `UserError`."""
+    """In the block, raise a `UserError` if messages of the record contradict each other."""
     try:
         yield
     except (ValueError, ArithmeticError, LookupError, TypeError, AssertionError) as error:
@@ -331,7 +331,10 @@ def fits_together(record: Record) -> Iterator[None]:
 
 
 def last_beat(record: Record) -> int:
-    """Return the number of the last beat that was answered."""
+    """Return the number of the record's last complete beat.
+
+    The court answered nobody in a beat after it: it was killed in that beat.
+    """
     sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
     return record.last_beat if sealed else record.last_beat - 1
 
@@ -344,7 +347,10 @@ def header_at(record: Record, beat: int) -> Header:
 
 
 def _same_result(record: Record, again: Result | None, last: int) -> bool:
-    """Return whether two results are equal; a result that was never sent is not compared."""
+    """Return whether the recorded result and the judged one are equal.
+
+    A result that the court never sent is not compared.
+    """
     recorded = record.result
     if recorded is None:  # a beat of an earlier segment may have had it, unanswered
         return again is None or len(record.headers) > 1
@@ -354,7 +360,7 @@ def _same_result(record: Record, again: Result | None, last: int) -> bool:
 
 
 def _same_sheet(recorded: Sheet | None, again: Sheet) -> bool:
-    """Return whether two sheets are equal, apart from the versions of software and protocol.
+    """Return whether the recorded sheet and the judged one are equal, apart from versions.
 
     Sheets of earlier versions have no `rule`; it is then not compared.
     """

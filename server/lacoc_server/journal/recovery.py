@@ -1,4 +1,4 @@
-"""A match that a killed court left behind, ready to go on (docs/architecture.md)."""
+"""Finds the match that a killed court left unfinished, so that it can go on."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -102,8 +102,8 @@ def unfinished(folder: Path, court: str, arena: Arena) -> Unfinished | None:
 def last_result(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if the office assigned it and it is over; else None.
 
-    Perhaps the court was ended before the office heard the result. So the court shows it again
-    until the next assignment.
+    Perhaps the court was ended before the office heard the result. So a court that is started again
+    shows this result until the office assigns the next match.
 
     Args:
         folder: folder of the records.

@@ -53,7 +53,7 @@ class Difference(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Inputs from which a world is built."""
+    """What a world (the robots on their field in MuJoCo) is built from."""
 
     number: int
     """Number of worlds that were built in this match before."""
@@ -63,7 +63,7 @@ class Build:
     entries: tuple[Entry, ...]
 
     def world(self) -> World:
-        """Build the world from these inputs."""
+        """Build the world: the robots on their field in MuJoCo."""
         setup = self.setup
         return World(arenas.from_settings(setup.arena, setup.settings, self.folder), self.entries)
 
@@ -113,7 +113,7 @@ class Section:
 
 @dataclass
 class SectionFinding:
-    """Result of a section's simulation."""
+    """Result of simulating a section of a record: how it differs from the record."""
 
     first_beat: int
     last_beat: int
@@ -138,7 +138,10 @@ class SectionFinding:
 
 
 class Worlds:
-    """Keeps the newest world that was built, because the next section often needs the same one."""
+    """Keeps the newest world that was built: the robots on their field in MuJoCo.
+
+    The next section of a record often needs the same one.
+    """
 
     def __init__(self) -> None:
         self._number = -1
@@ -213,7 +216,7 @@ def _step(step: Step, before: bytes, world: World, found: SectionFinding, bound:
 def _end(
     saved: bytes, step: Step, before: bytes, world: World, found: SectionFinding, bound: float
 ) -> None:
-    """Compare the world with a section's last snapshot, and the snapshot with its beat's frame.
+    """Compare the simulated world with a section's last snapshot, and this with its beat's frame.
 
     The frame has the hash of the snapshot's state, so any machine can check the second comparison
     exactly. Afterwards the world has the state of the snapshot.
@@ -257,7 +260,7 @@ def _possible(recorded: Sequence[Sequence[int]], world: World, bound: float) -> 
 
 
 def _joined(known: Difference | None, beat: int, what: str) -> Difference:
-    """Add a differing part to the first difference known so far.
+    """Add a part that differs in a beat to the first difference known so far.
 
     Returns:
         A new difference if `known` is None; `known` with `what` added if it is of the same beat;

@@ -20,10 +20,10 @@ _BEFORE = frozenset({Phase.LOBBY, Phase.READY})
 
 
 def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
-    """Take a seat, or come back to it.
+    """Give a seat to a contestant who asks for it, or let its contestant come back.
 
     From the countdown on, a seat keeps its files for this match, and new files wait for the next
-    match. A join for a seat that nobody has is then refused until the match is official or void.
+    match. From then on, nobody gets an empty seat until the match is official or void.
     """
     seat = match.seats[item.seat]
     if not _is_assigned(match, seat, item):
@@ -43,7 +43,10 @@ def join(match: MatchState, item: JoinSeat) -> Done | Refusal:
 
 
 def _is_assigned(match: MatchState, seat: Seat, item: JoinSeat) -> bool:
-    """Return whether this team may sit here with these files; in an open seat everybody may."""
+    """Return whether a team may have a seat with the files that it sent.
+
+    An open seat is free for anybody, with any files.
+    """
     if match.assigned is None:
         return True
     found = match.assigned.seat(seat.id)
@@ -86,7 +89,7 @@ def ready(match: MatchState, seat: Seat, is_ready: bool) -> Done | Refusal:
 
 
 def leave(match: MatchState, seat: Seat) -> Done:
-    """Free a seat in LOBBY or READY; in a later phase let its robot stand.
+    """Let a contestant leave: free the seat in LOBBY or READY; later, let the seat's robot stand.
 
     In a later phase the contestant keeps the seat for this match. The next match begins without
     them, unless they come back.

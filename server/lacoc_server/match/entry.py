@@ -43,7 +43,7 @@ def weigh_in(
     """Read and check a contestant's files; whether the robot stands is not tried here.
 
     The result is cached, because a court reads the same files twice: at its door, and when the
-    match takes in the join. A replay reads them from the record in the same way.
+    match gives the team its seat. A replay reads them from the record in the same way.
 
     Args:
         robot: the robot file.
@@ -103,11 +103,11 @@ def _weigh_in(
 
 @dataclass(frozen=True)
 class JoinCheck:
-    """Fills in the files that a join lacks, and checks them all.
+    """Completes the files in a request to join (`Join`), and checks them all.
 
-    A join without any file gets the files of its seat if its team has that seat, else the contest's
-    robot with its sample gait. A join that brings only gait files gets the contest's robot. If a
-    join brings files but lacks a gait file, no gait file is filled in.
+    A request without any file gets the files of its seat if its team has that seat, else the
+    contest's robot with its sample gait. A request with gait files only gets the contest's robot.
+    A gait file is never added to files that a team sent.
     """
 
     robot: SentFile
@@ -120,14 +120,14 @@ class JoinCheck:
     """Levels of control that the arena opens."""
 
     def __call__(self, join: Join, held: JoinSeat | None = None) -> tuple[Join, tuple[Phrase, ...]]:
-        """Fill in the files that a join lacks, and check them all.
+        """Complete the files in a request to join, and check them all.
 
         Args:
-            join: the join as it came.
-            held: the seat's present join; None: nobody has the seat.
+            join: the request as it arrived.
+            held: the request with which the seat was taken; None: nobody has the seat.
 
         Returns:
-            The join with the files that it uses. If it brought none, also a note about them.
+            The request with the files that are used. If it brought none, also a note about them.
 
         Raises:
             FileRefused: with every mistake of every file.

@@ -235,7 +235,7 @@ class Match(MatchState):
         return True
 
     def _hold_places(self) -> None:
-        """Mark robots that stray before play, so that they are put back.
+        """Mark robots that have left their start places before play, so that they are put back.
 
         A seat whose robot strayed `MOST_STRAYS` times is no longer ready.
         """

@@ -68,7 +68,7 @@ class Physics(Protocol):
         """Return the poses of the robots, in the form of `Frame.poses`."""
 
     def touched(self) -> Sequence[tuple[int, ...]]:
-        """Return for each seat the markers whose probes its robot touches after the newest tick.
+        """Return for each seat the markers that its robot touches after the newest tick.
 
         A marker is given by its index in the game's board. The indices are in ascending order.
         """

@@ -41,7 +41,7 @@ class Illegal(ValueError):
 
 @dataclass(frozen=True)
 class _DecisionRule:
-    """When a kind of decision is legal, and what it does."""
+    """The rule of one kind of decision: when it is legal, and what it does."""
 
     phases: frozenset[Phase]
     act: Callable[[MatchState, Any], Phrase]
@@ -310,7 +310,7 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
 
 
 def _struck(match: MatchState, number: int) -> Phrase:
-    """Describe, for the log, the event that is taken back."""
+    """Describe, for the log, an event that the referee takes back."""
     event = match.history.event(number)
     if isinstance(event, int):
         return say("struck.set", marker=match.game.markers[event].name)
@@ -319,7 +319,7 @@ def _struck(match: MatchState, number: int) -> Phrase:
 
 
 def _changes(fold: Fold) -> tuple[Phrase, ...]:
-    """List the events that disappear, then those that are new."""
+    """List the events that a take-back removes, then those that it makes new."""
     vanished = [
         say("change.vanishes", kind=event.kind, marker=event.marker) for _, event in fold.vanished
     ]

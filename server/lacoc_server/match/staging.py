@@ -65,7 +65,7 @@ class Staging:
         self.look()
 
     def look(self) -> None:
-        """Read the present poses of the robots from physics."""
+        """Read the present poses of all robots from physics, and keep them."""
         self.poses = self.physics.poses()
         self._bodies = [_BODY.unpack_from(self.poses, offset) for offset in self._offsets]
 

@@ -204,7 +204,7 @@ class MatchState:
         return reasons
 
     def next_joins(self) -> list[JoinSeat]:
-        """List the joins with which the next match begins: the newest of each seat.
+        """List the requests to join with which the next match begins: the newest of each seat.
 
         A contestant who left after the match had begun, and did not come back, is not among them.
         """

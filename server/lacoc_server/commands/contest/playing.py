@@ -190,7 +190,10 @@ def run(
 
 @contextmanager
 def _retiring() -> Iterator[None]:
-    """End this process with `NOT_AGAIN` if another machine has become the contest's office."""
+    """In the block, end this process if another machine has become the contest's office.
+
+    Its exit code, `NOT_AGAIN`, says that the process must not be started again.
+    """
     from lacoc_server.contest.kept.machine import Retired
 
     try:

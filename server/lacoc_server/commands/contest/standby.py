@@ -95,7 +95,7 @@ class _CopyTeller:
         self._printed_s = 0.0
 
     def copied(self, copy: "CopyState") -> None:
-        """Take note of a successful step, with the state of the copy after it."""
+        """Take note that copying succeeded, and of how much the copy has now."""
         if self._is_told or self._copy is None:
             screen.note(say("standby.there", at=self._address))
         self._copy, self._heard_s = copy, time.monotonic()

@@ -1,1 +1,1 @@
-"""Data that a match keeps: the judged ticks, for take-backs, and its whole state as bytes."""
+"""Keeps what the rules of a match saw and decided, for take-backs, and saves whole matches."""

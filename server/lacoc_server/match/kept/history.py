@@ -35,7 +35,10 @@ class SetMarker(msgspec.Struct, frozen=True):
 
 
 class Note(msgspec.Struct, frozen=True):
-    """Everything in a step except the numbers of its observation."""
+    """What happened in a step: a judged tick, or a referee's change of a marker.
+
+    The numbers that the rules saw in the step (the robots' motion) are kept apart.
+    """
 
     changed: SetMarker | None = None
     """The change of a marker; None: the step is an observation."""
@@ -57,7 +60,7 @@ _PLAIN = Note()
 
 
 class SavedHistory(msgspec.Struct, frozen=True):
-    """A history in the form in which it is saved; states of the game are msgpack."""
+    """A `History` in the form in which a match saves it; states of the game are msgpack."""
 
     state: msgspec.Raw
     over: Phrase | None
@@ -71,7 +74,7 @@ class SavedHistory(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class Fold:
-    """The match judged again without an event, before this take-back is accepted."""
+    """The result of judging a match again without one event; the match itself is unchanged."""
 
     notes: dict[int, Note]
     """Notes of all steps, as judged again."""
@@ -85,7 +88,7 @@ class Fold:
 
 
 class History:
-    """The judged ticks of a match, and the state of its game."""
+    """The state of a match's game, and all that the rules saw and decided, for take-backs."""
 
     def __init__(self, game: AnyGame) -> None:
         self._game = game
@@ -152,7 +155,7 @@ class History:
             self._forget()
 
     def keep_nothing(self) -> None:
-        """Forget all steps, now and from now on: no event can be taken back any more.
+        """Forget what the rules saw and decided, now and later: no event can be taken back then.
 
         So beats take less time, and a save of a match of three minutes has 10 kB instead of 1 MB.
         """
@@ -217,7 +220,12 @@ class History:
         return Fold(notes, state, over, tuple(vanished), tuple(appeared))
 
     def accept(self, fold: Fold, next_number: int) -> None:
-        """Replace the history by a fold; number its new events from `next_number` on."""
+        """Carry out a take-back: use the judgement without the event from now on.
+
+        Args:
+            fold: the judgement without the event, from `without`.
+            next_number: log number of the first event that it has and the match had not.
+        """
         self._notes = dict(fold.notes)
         for number, (index, place, _) in enumerate(fold.appeared, next_number):
             note = self._notes[index]
@@ -243,7 +251,7 @@ class History:
     def load(self, saved: SavedHistory) -> None:
         """Go on from a saved history of the same game.
 
-        Its steps are forgotten if this history keeps none.
+        After `keep_nothing`, only the state of the game is taken from it.
 
         Raises:
             BadMessage: if a state is not one of this game.
@@ -265,7 +273,7 @@ class History:
         struck: frozenset[Claim],
         idle: tuple[int, ...],
     ) -> tuple[Any, tuple[GameEvent, ...]]:
-        """Judge one tick without the claims that are struck out, and those of idle seats."""
+        """Judge one tick; ignore the claims of `struck` (events taken back), and of idle seats."""
         after, events = self._game.step(state, observation, BEAT_S, struck)
         while idle and (more := _claims(events, idle) - struck):
             struck |= more
@@ -273,7 +281,12 @@ class History:
         return after, events
 
     def _keep(self, note: Note, numbers: tuple[int, ...]) -> None:
-        """Count a new step and keep its note; the events of `numbers` can be taken back."""
+        """Keep the note of a new judged tick or change of a marker; events in it can be taken back.
+
+        Args:
+            note: what happened.
+            numbers: log numbers of the events that can be taken back.
+        """
         for number in numbers:
             self._step_of[number] = self._count
         if note is not _PLAIN:
@@ -281,7 +294,7 @@ class History:
         self._count += 1
 
     def _forget(self) -> None:
-        """Forget all steps, because no event in them can be taken back.
+        """Forget all judged ticks so far, because no event in them can be taken back.
 
         Judging again will begin with the present state. So memory does not grow in a practice,
         which has no such events and may go on for days.
@@ -291,7 +304,10 @@ class History:
             self._count, self._seen, self._notes = 0, bytearray(), {}
 
     def _steps(self) -> Iterator[tuple[int, Note, Observation | None]]:
-        """Yield each step: its index, its note, and its observation, or None if it has none."""
+        """Yield each judged tick and each referee's change of a marker, in order.
+
+        Each comes with its index, its note and what the rules saw (None for a change of a marker).
+        """
         size = _VIEW.size * self._views
         seen = memoryview(self._seen)
         offset = 0
@@ -322,7 +338,7 @@ def _note(
     numbers: tuple[int, ...] = (),
     idle: tuple[int, ...] = (),
 ) -> Note:
-    """Return the note of an observation; `_PLAIN` if it has nothing but the robots' numbers.
+    """Return the note of a judged tick; `_PLAIN` if nothing happened but that robots moved.
 
     A note is needed if a robot was put at a place, touched a marker or is idle, or if the rules
     decided an event.
@@ -353,12 +369,10 @@ def _observation(packed: memoryview, views: int, note: Note) -> Observation:
 
 
 def _strike(note: Note, number: int) -> Note:
-    """Return a step's note in which an event is marked as taken back.
-
-    If the step is a change of a marker, the change is marked.
+    """Return a note in which an event, or a referee's change of a marker, is marked as taken back.
 
     Args:
-        note: note of the step.
+        note: note of the judged tick, or of the change.
         number: number of the event, or of the decision that changed the marker.
     """
     if note.changed is not None:

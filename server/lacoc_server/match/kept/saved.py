@@ -22,7 +22,7 @@ _FORMAT = 3
 
 
 class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
-    """The fields of a `Seat` that change; robot and gait come from the join's files."""
+    """A saved seat: the fields of a `Seat` that change. Robot and gait are made from the files."""
 
     join: JoinSeat | None
     coming: JoinSeat | None
@@ -135,8 +135,8 @@ def _made_of(match: MatchState) -> bytes:
 def _entry(match: MatchState, seat: Seat, saved: _SavedSeat) -> Entry | None:
     """Return the robot and gait of a saved seat; None if nobody had the seat.
 
-    If the saved join is the present join of `seat`, these are the present robot and gait. Otherwise
-    they are made from the saved files.
+    If the seat was saved with the files that `seat` has now, these are its robot and gait.
+    Otherwise they are made from the saved files.
     """
     join: Any = saved.join
     if join is None:
