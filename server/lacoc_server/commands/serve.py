@@ -249,7 +249,7 @@ def _open_doors(
 
 
 def _lines(court: str, address: str, seats: Mapping[str, str], referee: str) -> dict[str, str]:
-    """Return the command lines for a court: by seat, for "referee" and for "spectators"."""
+    """Return the command lines that connect to a court: by seat, for "referee" and "spectators"."""
     where = f"--court {court} --connect {address}"
     return {
         **{seat: f"lacoc play {where} --token {token}" for seat, token in seats.items()},

@@ -1,4 +1,4 @@
-"""Matches that the office assigns to a court: prepared beside the beats, opened between two beats.
+"""Prepares matches that the office assigns to a court on another thread than that of the beats.
 
 A match is *prepared* when its arena is loaded and the files of its teams are weighed in. To open it
 then takes as long as to open any other match.

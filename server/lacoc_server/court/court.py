@@ -257,7 +257,7 @@ class Court:
             self._say_health(now_s)
 
     def _gains(self) -> tuple[Gains, ...]:
-        """Ask the game what each robot would gain next; return () if the game's code is wrong."""
+        """Return the points that each robot could gain next; () if the game's code is wrong."""
         try:
             return self._journal.match.gains()
         except UserError as wrong:
@@ -292,7 +292,7 @@ class Court:
 
     @property
     def _assigned(self) -> Assigned:
-        """The assignment of this match; at a court that was started alone, its present settings.
+        """What is assigned to this match; if the court was started alone, what its settings say.
 
         After a restart the settings have new tokens, which the interrupted match does not have.
         """

@@ -62,7 +62,7 @@ class _WalkedWay:
 
 
 class _LinkCounts:
-    """Counts of one seat's link during PLAYING.
+    """Counts what arrives on the link of one seat during PLAYING, and how long the seat is silent.
 
     Args:
         before: the counts before the court was killed; None: there are none.

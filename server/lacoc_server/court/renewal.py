@@ -15,7 +15,7 @@ _LOOK_S = 1.0
 
 
 class Renewal:
-    """Watches the files of a certificate on a thread beside the beats; used as a context manager.
+    """Watches the files of a certificate, on a thread of its own; used as a context manager.
 
     Args:
         pair: the files of certificate and key.

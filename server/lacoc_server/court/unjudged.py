@@ -19,7 +19,7 @@ _RESUME_BEATS = BEATS_PER_S // 2
 
 
 def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
-    """Return the decisions that follow from the match's present state.
+    """Return the decisions that the court takes now in a match without a referee.
 
     Args:
         match: a match that begins when its seats are ready.

@@ -189,7 +189,7 @@ class Inbox:
         """Open the seats of a match; call it with each match that the court opens.
 
         Args:
-            assigned: what is assigned.
+            assigned: the match, as it is assigned.
             staying: the seats whose sessions go on. All others end.
         """
         self._openings.admit(assigned)
@@ -201,7 +201,7 @@ class Inbox:
     def commands(
         self, now_s: float, arrived: Sequence[Sequence[bytes]], silent: Sequence[bool]
     ) -> list[Input]:
-        """Take in a beat's commands.
+        """Check the commands that arrived for a beat; return the inputs that follow from them.
 
         Args:
             now_s: monotonic time.

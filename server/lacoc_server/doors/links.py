@@ -207,7 +207,7 @@ class Links:
         link.trip = Trip(trips_s[p50], trips_s[p95])
 
     def _agree(self) -> None:
-        """Set the common delay to the seats' longest p95, up to the longest delay allowed.
+        """Set the common delay to the longest p95 of the seats' round trips, up to the limit.
 
         A change that would lower the delay by less than `LOWER_BEATS` is not made.
         """

@@ -216,7 +216,7 @@ def _step(step: Step, before: bytes, world: World, found: SectionFinding, bound:
 def _end(
     saved: bytes, step: Step, before: bytes, world: World, found: SectionFinding, bound: float
 ) -> None:
-    """Compare the simulated world with a section's last snapshot, and this with its beat's frame.
+    """Compare the simulated world with a section's last snapshot, then the snapshot with its frame.
 
     The frame has the hash of the snapshot's state, so any machine can check the second comparison
     exactly. Afterwards the world has the state of the snapshot.

@@ -26,7 +26,7 @@ class VerdictKind(StrEnum):
 
 @dataclass(frozen=True)
 class Verdict:
-    """Result of a verification."""
+    """The result of the verification of a record."""
 
     kind: VerdictKind
     beats: int
@@ -61,7 +61,7 @@ def conclude(
     other_model: Difference | None = None,
     bound: float = BOUND,
 ) -> Verdict:
-    """Make a verdict from all findings.
+    """Make the verdict on a record from all that its verification found.
 
     Bits may differ only where a segment was recorded with another arithmetic, or does not name its
     arithmetic.

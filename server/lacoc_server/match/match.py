@@ -76,10 +76,10 @@ class Match(MatchState):
         return referee.legality(self)
 
     def gains(self) -> tuple[Gains, ...]:
-        """Return what each robot would gain next by the rules; empty before READY and after play.
+        """Return the points that each robot could gain next; empty before READY and after play.
 
         Raises:
-            UserError: if the code of somebody else's game is wrong.
+            UserError: if the code of the game, which may be somebody else's, is wrong.
         """
         if not Phase.READY <= self.phase <= Phase.HALTED:
             return ()

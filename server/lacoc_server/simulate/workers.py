@@ -243,7 +243,8 @@ def _work(
     Args:
         connection: the pipe.
         background: whether this process gives way to others.
-        shown: shared memory; the parent sees there which bot runs, and how often it was looked at.
+        shown: shared memory, in which the parent sees which bot runs, and whether this process
+                still watches the bot's time.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:

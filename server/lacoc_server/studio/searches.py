@@ -75,7 +75,9 @@ class Searches:
             self._changed.notify()
 
     def cancel(self, job: str) -> None:
-        """Let a running search end soon with the best it has found; refuse a search that waits.
+        """Let a running search end soon with the best it has found; remove a search that waits.
+
+        Who asked for a removed search gets a refusal.
 
         Raises:
             UserError: if there is no search with this name.

@@ -69,7 +69,7 @@ class Sensed:
 
 @dataclass(frozen=True, repr=False)
 class Walk:
-    """The measurements of a trial in ticks of 20 ms; index k of an array is after tick k."""
+    """The measurements of a trial, tick by tick; entry k of an array was measured after tick k."""
 
     legs: tuple[str, ...]
     """Labels of the legs, in leg order."""

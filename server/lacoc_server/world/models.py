@@ -1,4 +1,4 @@
-"""Compiles the models of a world: the whole one, and those that physics and touch need.
+"""Compiles the MuJoCo models of a world: a whole one, one for physics, one to find touches.
 
 The whole model costs physics time, because MuJoCo moves its drawn geoms in each step. Without them
 and without the midphase, a tick of physics takes about 0.9 of the time and has the same bits

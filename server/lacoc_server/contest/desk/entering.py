@@ -1,4 +1,4 @@
-"""Requests of a team: apply to take part, hand in other files, read the state of its entry."""
+"""Carries out what teams ask of the desk: to apply, to hand in files, to see their own entry."""
 
 from dataclasses import replace
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Requests of the organiser and the staff, which the desk hands on to `acts`."""
+"""Carries out what the organiser and the staff ask of the desk; `acts` has the functions."""
 
 from collections.abc import Callable, Iterable, Sequence
 

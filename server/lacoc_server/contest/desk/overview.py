@@ -1,4 +1,4 @@
-"""Everything that the organiser's page shows, from the facts and what the office knows."""
+"""Computes everything that the organiser's page shows, from facts and what the office knows."""
 
 from collections.abc import Iterator
 from typing import Literal

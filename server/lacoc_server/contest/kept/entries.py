@@ -334,7 +334,7 @@ class EntryFolder:
         return [name for name in regular.names(self.path, entry_hash) if name not in known]
 
     def _read(self, entry_hash: str, name: str) -> bytes:
-        """Read a file of an entry; follow no link, because anybody may have made the folder."""
+        """Read a file of an entry; follow no symbolic link, because a stranger may have made it."""
         folder = self.path.parent  # so that a link in place of the folder of entries is found
         return regular.read(folder, self.path.name, entry_hash, name, most_bytes=_MOST_BYTES)
 

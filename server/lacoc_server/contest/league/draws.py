@@ -169,7 +169,7 @@ def drawn_stages(
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:
-    """Put a substitute in the place of the team it replaces, unless it is in the stage already."""
+    """Replace a team of a stage by its substitute, unless this one is in the stage already."""
     if fact.substitute in stage.entries:
         return stage
 

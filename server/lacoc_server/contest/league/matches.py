@@ -284,7 +284,7 @@ def _team(source: AnySource, matches: Mapping[str, ContestMatch]) -> Team:
 def _verdict(
     games: Sequence[CountedGame], teams: tuple[str, str], rules: StageRules
 ) -> tuple[str, How] | None:
-    """Return the winner (NOBODY: a draw) and how it was decided; None: play goes on."""
+    """Return the winner of a match (NOBODY: a draw) and how it was decided; None: it is open."""
     first, second = (sum(game.winner == team for game in games) for team in teams)
     left = rules.settings.games - len(games)
     if abs(first - second) > max(left, 0):

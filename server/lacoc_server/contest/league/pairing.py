@@ -4,23 +4,23 @@ import msgspec
 
 
 class Source(msgspec.Struct, frozen=True, tag_field="source", omit_defaults=True):
-    """Where the team of a place comes from."""
+    """Where the team of a place in a pairing comes from."""
 
 
 class Entrant(Source, frozen=True, tag="entry"):
-    """A team that the draw puts in this place."""
+    """The team of a place is one that the draw puts there."""
 
     team: str
 
 
 class WinnerOf(Source, frozen=True, tag="winner"):
-    """The winner of an earlier pairing."""
+    """The team of a place is the winner of an earlier pairing."""
 
     pairing: str
 
 
 class LoserOf(Source, frozen=True, tag="loser"):
-    """The loser of an earlier pairing."""
+    """The team of a place is the loser of an earlier pairing."""
 
     pairing: str
 

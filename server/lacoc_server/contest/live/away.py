@@ -178,7 +178,7 @@ class AwayCourt:
             office.connect(self.name, link, self._entry.elsewhere)
 
     def _connected(self) -> CourtLink | None:
-        """Return a connection to the other machine; None: the court is not there."""
+        """Return a connection to the court on its own machine; None: the court does not answer."""
         if not is_open(self._entry.elsewhere):
             return None
         try:

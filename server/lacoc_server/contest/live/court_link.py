@@ -203,7 +203,7 @@ class CourtLink:
         return self._ask("retire", request, Done)
 
     def tell(self, teams: Mapping[str, Whereabouts]) -> Asked[Done]:
-        """Tell the court where all teams are.
+        """Tell the court where each team of the contest plays, or what it waits for.
 
         Args:
             teams: where each team is, by the salted hash of the team's token.

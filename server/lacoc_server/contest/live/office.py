@@ -131,12 +131,13 @@ class Office:
         self._heard_ms[court] = _now_ms()
 
     def step(self) -> None:
-        """Read the courts once.
+        """Read the states of all courts, and do what follows.
 
-        Then append results and draws, take games back and call the next ones.
+        That is: append results and draws, take games back, and call the next ones.
 
         Raises:
-            UserError: if the facts can't be read or written, or a frozen file has changed.
+            UserError: if the facts can't be read or written, or a team's file has changed since
+                it was weighed in.
         """
         now_ms = _now_ms()
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}

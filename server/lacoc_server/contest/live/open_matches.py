@@ -125,7 +125,10 @@ class OpenMatches:
         return True
 
     def _is_free(self, link: CourtLink, call: str, now_ms: int) -> bool:
-        """Return whether a court has no match, or has shown a result for long enough."""
+        """Return whether a court can get an open match.
+
+        It can if it has no match, or has shown the result of its match for long enough.
+        """
         if not call:
             return True
         if link.phase not in _OVER:

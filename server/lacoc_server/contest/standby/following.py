@@ -101,7 +101,7 @@ class Follower:
         self._applications.__exit__()
 
     def step(self) -> CopyState:
-        """Copy all that has changed; return how much the copy has now.
+        """Copy all that has changed at the office; return how much the copy has now.
 
         Raises:
             NotThere: if the office does not answer. What was copied before stays; call this again.

@@ -15,10 +15,10 @@ _PAUSE_S = 0.5
 
 
 class Lookout:
-    """Asks all known machines again and again, on a thread; used as a context manager.
+    """Asks all known machines again and again whether a later office runs there, on a thread.
 
-    On entry each machine is asked once. So an office that is started again does nothing before it
-    has looked for a later one.
+    Used as a context manager. On entry each machine is asked once. So an office that is started
+    again does nothing before it has looked for a later one.
 
     Args:
         tenure: this machine's time as the office; it ends if a later office answers.

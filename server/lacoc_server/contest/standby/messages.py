@@ -1,7 +1,7 @@
-"""Messages between the office and its second machine; `sealing` encrypts them.
+"""Messages between an office and the machine that copies it (the second machine).
 
 The second machine says what it has, and the office answers with what is missing. Neither keeps a
-state of the other, so both can be restarted at any time.
+state of the other, so both can be restarted at any time. `sealing` encrypts the messages.
 """
 
 from typing import Annotated, Literal
@@ -22,7 +22,7 @@ that the office's machine runs in place of theirs."""
 class StandbyAsk(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, tag_field="ask"
 ):
-    """The fields of all requests between the two machines of an office."""
+    """The fields of all requests between an office and the machine that copies it."""
 
     generation: Annotated[int, msgspec.Meta(ge=0)]
     """How often the office has gone to another machine, as far as the sender can tell. An office
@@ -37,7 +37,7 @@ class KnockAsk(StandbyAsk, frozen=True, kw_only=True, tag="knock"):
 
 
 class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
-    """Asks what the office has that the second machine lacks. The answer is `There`."""
+    """Asks what the office has that the machine which copies it lacks. The answer is `There`."""
 
     address: str
     """Address of the office if it went on at the second machine."""
@@ -76,7 +76,7 @@ class OfficeThere(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer",
 
 
 class There(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="there"):
-    """Answer to `StepAsk`: what the office has."""
+    """Answer to `StepAsk`: what the office has that the asking machine lacks."""
 
     facts: tuple[str, ...]
     """The stored texts of the next facts."""

@@ -87,7 +87,9 @@ class Other:
         return answer
 
     def _connected(self) -> Session:
-        """Return the session, which connects again by itself once it was open.
+        """Return the network session to the other machine; open it if it is not open yet.
+
+        Once it was open, it connects again by itself.
 
         Raises:
             NotThere: if nothing listens at the address.

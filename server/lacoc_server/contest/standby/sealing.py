@@ -1,4 +1,4 @@
-"""Encrypts what the two machines of an office send each other.
+"""Encrypts the messages between an office and the machine that copies it.
 
 The key is made from a token that stands in the contest file of both machines and is never sent. So
 somebody who listens learns nothing, and an answer of somebody else is noticed.

@@ -228,7 +228,10 @@ def _arena(game: GameToCheck) -> Arena:
 
 
 def _sides(folder: Path, game: GameToCheck, record: Record) -> list[Side]:
-    """Return the side of each seat; leave out a team none of whose entries fits the record."""
+    """Return team, entry and bot of each seat; leave out a team none of whose entries fits.
+
+    An entry fits if its files are those with which the team joined in the record.
+    """
     entries = EntryFolder(folder / ENTRIES)
     sides: list[Side] = []
     for seat, team in enumerate(game.played.teams):

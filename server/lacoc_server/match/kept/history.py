@@ -5,7 +5,7 @@ it judges the game again from there, without the event's claim. Paths, clock and
 stay as they were, and nothing is deleted from the log.
 
 A step is a judged tick, or a referee's change of a marker. The numbers of an observation are
-packed; a step has a note only if something else happened in it. Three minutes take a megabyte.
+kept as bytes; a step has a note only if something else happened in it. Three minutes need 1 MB.
 """
 
 from collections.abc import Collection, Iterable, Iterator

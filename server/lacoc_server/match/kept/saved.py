@@ -40,7 +40,7 @@ class _SavedSeat(msgspec.Struct, frozen=True, array_like=True):
 
 
 class _SavedMatch(msgspec.Struct, frozen=True, array_like=True):
-    """A whole match; the fields from `phase` on are those of `MatchState`."""
+    """A saved match; the fields from `phase` on are those of `MatchState`."""
 
     format: int
     made_of: bytes

@@ -70,7 +70,7 @@ class ForkEngine(Protocol):
 
 
 class Wish(msgspec.Struct, frozen=True, kw_only=True):
-    """Which odds of a record are wanted."""
+    """Says for which record the odds are wanted, with which bots, and how exactly."""
 
     file: str
     bots: tuple[str, str]

@@ -52,7 +52,7 @@ class CoachFound(NamedTuple):
 
 
 def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
-    """Choose which key of level B is changed.
+    """Choose the key of level B whose table the coach shall improve.
 
     Args:
         gait: the robot's gait.

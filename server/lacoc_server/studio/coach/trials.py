@@ -59,7 +59,7 @@ class Task(NamedTuple):
 
 
 class Trials:
-    """Tries tables in processes.
+    """Lets the robot walk with tables, in other processes, and scores its walks.
 
     Args:
         task: the robot, the table and the goal.

@@ -65,7 +65,7 @@ def other_gait(task: Task, styles: Styles, table: Angles, figures: Figures) -> O
 
 
 def _differences(styles: Styles, own: Angles, table: Angles) -> Iterator[GaitDifference]:
-    """Yield the ways in which a table looks different, the most visible way first."""
+    """Yield how a table looks different from the student's own, the most visible way first."""
     steps = styles.look(table) - styles.look(own)
     for index in np.argsort(-abs(steps), kind="stable"):
         if abs(steps[index]) >= _SEEN:

@@ -20,7 +20,7 @@ number that could lower a foot by less than the second [m] is not the cause."""
 
 
 def balance(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Yield findings: how often no foot or the belly carries the robot, or balance is lost."""
+    """Yield findings: how often no foot carries the robot, its belly does, or it loses balance."""
     figures = seen.figures
     hangs = seen.no_feet_share
     if min(hangs, figures.belly_share) > _BELLY:
