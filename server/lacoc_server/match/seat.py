@@ -70,7 +70,10 @@ class Seat:
         self.state = self.drive.begin(level)
 
     def stand(self) -> None:
-        """Let the robot stand in the first posture of key 0 at the same level (silence, freeze)."""
+        """Let the robot stand in the first posture of key 0, as it does when silent or frozen.
+
+        The level does not change.
+        """
         if self.drive and self.state:
             self.state = self.drive.stand(self.state)
 

@@ -244,7 +244,7 @@ def _work(
         connection: the pipe.
         background: whether this process gives way to others.
         shown: shared memory, in which the parent sees which bot runs, and whether this process
-                still watches the bot's time.
+            still watches the bot's time.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
     if background:

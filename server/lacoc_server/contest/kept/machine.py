@@ -15,7 +15,7 @@ from lacoc_shared.words import say
 
 
 class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """The role of this machine in a contest, and the addresses of other machines that have one."""
+    """The role of this machine in a contest, and the addresses of machines with other roles."""
 
     role: Literal["office", "copy", "retired"] = "office"
     """office: the contest is run here. copy: another machine's office is copied here. retired: the

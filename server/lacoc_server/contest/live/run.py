@@ -259,6 +259,6 @@ def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
     """Return whether the office may end, `passed_s` after its courts need not stay open any more.
 
-    It may if all records of courts on other machines are here, or have not come for `_COPY_S`.
+    It may if all records of courts on other machines are here, or if it has waited for `_COPY_S`.
     """
     return passed_s > 0 and (passed_s > _COPY_S or all(one.is_copied for one in away))

@@ -81,7 +81,7 @@ class StandbyDoor:
         self._store.__exit__()
 
     def judge(self, payload: bytes) -> bytes | Refusal:
-        """Answer an encrypted request; refuse it if it was not encrypted with the token's key."""
+        """Answer an encrypted request; refuse it if the sender's machine has another token."""
         if len(payload) > ASK_MAX_BYTES:
             return Refusal(say("standby.not-proven"))
         try:

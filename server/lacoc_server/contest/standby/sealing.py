@@ -1,6 +1,6 @@
 """Encrypts the messages between an office and the machine that copies it.
 
-The key is made from a token that stands in the contest file of both machines and is never sent. So
+The key is made from a token that stands in the secrets file of both machines and is never sent. So
 somebody who listens learns nothing, and an answer of somebody else is noticed.
 """
 

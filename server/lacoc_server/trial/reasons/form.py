@@ -1,4 +1,4 @@
-"""A key's table, and how far the numbers of legs differ that should move alike.
+"""A key's table, and how much its numbers differ between legs that should move alike.
 
 In a gait of two halves each leg does half a cycle later what the leg opposite to it does now: that
 is its **partner**. Its **mates** are the legs that do the same at the same time: every second leg,
