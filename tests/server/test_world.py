@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -125,7 +126,8 @@ def test_a_state_of_another_model_is_refused() -> None:
 def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
     """Rules 6: what is only drawn or touched, and how contacts are found, changes no bit.
 
-    MuJoCo alone steps the whole model. The robots get into each other's legs, along a wall too.
+    MuJoCo alone steps the whole model. The robots get into each other's legs, along a wall too, and
+    are thrown at each other from far away.
     """
     ground = arenas.load(arena)
     it = World(ground, [entry(robot)] * len(ground.seats))
@@ -133,10 +135,14 @@ def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
     assert it.whole.ngeom > it.model.ngeom
     wall_m = ground.game.size_m[0] / 2 - 0.1
     rng = np.random.default_rng(1)
-    contacts, met = set(), set()
-    for x_m in (0.0, wall_m):
+    contacts, met, stepped = set(), set(), set()
+    kinds = it._nearness.models._asdict()
+    for x_m, y_m, thrown_m_s in ((0.0, 0.12, 0.0), (wall_m, 0.12, 0.0), (0.3, 0.6, 1.0)):
         for seat in range(len(ground.seats)):
-            it.place(seat, Place(x_m, -0.12 + 0.24 * seat, math.pi / 2 - math.pi * seat))
+            side = 1 - 2 * seat
+            it.place(seat, Place(x_m, -y_m * side, math.pi / 2 * side))
+            it.data.qvel[it.robots[seat].root_dof + 1] = thrown_m_s * side
+        it.load(it.digest + _state_of(it.model, it.data))
         mujoco.mj_setState(it.whole, whole, np.frombuffer(it.save()[8:]), STATE)
         for tick in range(250):
             if tick % 10 == 0:
@@ -146,18 +152,26 @@ def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
                     for own, turn in zip(it.robots, turns, strict=True)
                 ]
             assert it.step(angles) is None
+            stepped |= {kind for kind, model in kinds.items() if model is it._nearness.model()}
             it.touched()
             whole.ctrl[:] = it.data.ctrl
             mujoco.mj_step(it.whole, whole, nstep=SUBSTEPS)
-            state = np.empty(mujoco.mj_stateSize(it.whole, STATE))
-            mujoco.mj_getState(it.whole, whole, state, STATE)
-            assert state.tobytes() == it.save()[8:], tick
+            assert _state_of(it.whole, whole) == it.save()[8:], tick
             met |= {it.whole.geom(geom).name for geom in whole.contact.geom.ravel().tolist()}
             bodies = it.whole.geom_bodyid[whole.contact.geom]
             contacts |= {tuple(pair) for pair in (it.whole.body_rootid[bodies] > 0).tolist()}
     assert "wall:east" in met
     if len(ground.seats) > 1:
         assert (True, True) in contacts, "no robot met the other one"
+        assert stepped == {"stepped", "clear", "apart"}
+    else:
+        assert stepped == {"apart"}
+
+
+def _state_of(model: Any, data: Any) -> bytes:
+    state = np.empty(mujoco.mj_stateSize(model, STATE))
+    mujoco.mj_getState(model, data, state, STATE)
+    return state.tobytes()
 
 
 def test_geoms_that_a_pair_names_stay() -> None:

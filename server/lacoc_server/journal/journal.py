@@ -128,7 +128,7 @@ class Journal:
 
     def _new(self, frame: Frame) -> bool:
         """Return whether phase, seats, markers, poses or clock differ from the last frame's."""
-        content = (frame.phase, frame.seats, frame.markers, frame.poses, frame.clock_ticks)
+        content = (frame.clock_ticks, frame.poses, frame.phase, frame.seats, frame.markers)
         new, self._last = content != self._last, content
         return new
 

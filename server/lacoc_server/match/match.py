@@ -187,8 +187,8 @@ class Match(MatchState):
 
     def _move_on(self) -> None:
         """Change the phase if that needs no decision: readiness, countdown, time and absence."""
-        is_silent = all(seat.silent for seat in self.seats)
-        self.silent_beats = self.silent_beats + 1 if is_silent else 0
+        heard = [seat for seat in self.seats if not seat.silent]
+        self.silent_beats = 0 if heard else self.silent_beats + 1
         if self.phase is not _PLAYING:
             self._move_to_play()
         if self.phase is _PLAYING and self.time_is_up:  # after a referee moved the clock

@@ -72,3 +72,17 @@ class Robot:
         dofs = np.concatenate([np.arange(self.root_dof, self.root_dof + 6), self.joint_dofs])
         data.qvel[dofs] = 0
         data.qacc_warmstart[dofs] = 0
+
+
+def reach_m(model: Any, geom: int, base: int) -> float:
+    """Return an upper bound [m] of the distance of a geom's points from the origin of `base`.
+
+    The bound holds at all joint angles, because each hinge goes through the origin of its own body.
+    """
+    middle_m = np.linalg.norm(model.geom_pos[geom])
+    bound_m = float(middle_m) + float(model.geom_rbound[geom])
+    body = model.geom_bodyid[geom]
+    while body != base:
+        bound_m += float(np.linalg.norm(model.body_pos[body]))
+        body = model.body_parentid[body]
+    return bound_m

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from lacoc_server.world.models import PROBE
-from lacoc_server.world.robot import Robot
+from lacoc_server.world.robot import Robot, reach_m
 from lacoc_shared.messages import MarkerInfo
 
 Floats = npt.NDArray[np.float64]
@@ -225,7 +225,7 @@ def _part(model: Any, geom: int, origin: int) -> _RobotPart:
     radius_m, half_m, _ = model.geom_size[geom].tolist()
     if model.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
         radius_m, half_m = float(model.geom_rbound[geom]), 0.0
-    return _RobotPart(geom, radius_m, half_m, _reach_m(model, geom, origin))
+    return _RobotPart(geom, radius_m, half_m, reach_m(model, geom, origin))
 
 
 def _limbs(model: Any, geoms: Sequence[int]) -> tuple[list[_Limb], float]:
@@ -251,17 +251,3 @@ def _limb_of(model: Any, geom: int) -> int:
     while body != root and model.body_parentid[body] != root:
         body = model.body_parentid[body]
     return int(body)
-
-
-def _reach_m(model: Any, geom: int, base: int) -> float:
-    """Return an upper bound [m] of the distance of a geom's points from the origin of `base`.
-
-    The bound holds at all joint angles, because each hinge goes through the origin of its own body.
-    """
-    middle_m = np.linalg.norm(model.geom_pos[geom])
-    reach_m = float(middle_m) + float(model.geom_rbound[geom])
-    body = model.geom_bodyid[geom]
-    while body != base:
-        reach_m += float(np.linalg.norm(model.body_pos[body]))
-        body = model.body_parentid[body]
-    return reach_m

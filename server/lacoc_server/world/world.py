@@ -17,6 +17,7 @@ from lacoc_robots.model import add_robot, set_options
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.physics import Fault
 from lacoc_server.world.models import compile_models
+from lacoc_server.world.nearness import Nearness
 from lacoc_server.world.robot import Robot
 from lacoc_server.world.scene import make_scene
 from lacoc_server.world.touch import TouchTest
@@ -78,7 +79,7 @@ class World:
                 rgba=_rgba(arena.seats[index].colour),
             )
         self._extend(spec)
-        models = compile_models(spec)
+        models = compile_models(spec, len(entries))
         self.whole = models.whole
         """The model with all that is drawn; its hash is `model_hash`."""
         self.model = models.stepped
@@ -105,6 +106,7 @@ class World:
         self._weights = _weights(self.model)
         for seat, robot in enumerate(self.robots):
             robot.put(self.data, arena.game.starts[first + seat][0])
+        self._nearness = Nearness(models, self._qpos, self.robots)
         self._keep()
         self._touch: TouchTest | None = None
         self._untouched: list[tuple[int, ...]] = [()] * len(self.robots)
@@ -225,7 +227,7 @@ class World:
 
     def _advance(self) -> None:
         """Let the physics of one tick pass."""
-        mujoco.mj_step(self.model, self.data, nstep=SUBSTEPS)
+        mujoco.mj_step(self._nearness.model(), self.data, nstep=SUBSTEPS)
 
     def _keep(self) -> None:
         mujoco.mj_getState(self.model, self.data, self._state, STATE)
