@@ -1,4 +1,4 @@
-"""The settings of a class: code, page key, rules, groups, and the table that was handed out."""
+"""The settings of a class: code, page key, rules, groups, and the table that students may take."""
 
 import time
 

@@ -31,7 +31,7 @@ _CLOSE_S = 15.0
 
 
 class ClassMatch(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that has ended."""
+    """A match of the tournament that has ended."""
 
     left: str
     right: str
@@ -157,7 +157,7 @@ class Tournament:
     async def _simulate(
         self, teams: "Mapping[str, _TournamentPlayer]", words: list[str]
     ) -> Phrase | None:
-        """Run `lacoc simulate` with these teams and further words of the command line.
+        """Run `lacoc simulate` with these teams and with more words on its command line.
 
         Returns:
             Why the command ended early; None if it did not.

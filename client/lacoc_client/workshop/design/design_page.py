@@ -63,9 +63,9 @@ class DesignPage:
                 task.cancel()
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request, or close the page; return False if the page was closed.
+        """Answer a request, or close the connection; return False if it was closed.
 
-        A page that is not let in may only send a hello or a ping.
+        A page that has not been let in yet may only send `Hello` and `Ping`.
         """
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
@@ -314,7 +314,11 @@ def parsed(asked: requests.ParseAsk) -> Any:
 
 
 def _must_allow(learner: Learner, size: str | None) -> None:
-    """Check that the coach may search for a change of this size.
+    """Check that the teacher lets the coach search for a change of this size.
+
+    Args:
+        learner: the student who asks.
+        size: "cell", "three" or "table"; None: the coach only says which numbers matter.
 
     Raises:
         UserError: if the teacher does not allow it.
@@ -334,5 +338,5 @@ def _must_be_open(learner: Learner, phase: int) -> None:
 
 
 def _court(host: Host) -> str | None:
-    """Return the court to which a page can take its table: "practice"; None: there is none."""
+    """Return "practice", the name of the court where a page can try its table; None: no court."""
     return None if host.playing is None else "practice"

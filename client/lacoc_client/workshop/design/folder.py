@@ -55,13 +55,13 @@ class Read(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SavedFile(msgspec.Struct, frozen=True):
-    """The answer after a file was written."""
+    """The answer to a request to save, if the file was written."""
 
     version: str
 
 
 class Conflict(msgspec.Struct, frozen=True):
-    """The answer after nothing was written, because the file has changed since it was read."""
+    """The answer to a request to save, if the file had changed since it was read: not saved."""
 
     conflict: Read
     """The present content of the file."""
@@ -95,9 +95,9 @@ class Folder:
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Read the folder again.
+        """List the folder's files again.
 
-        Return the names of files that were changed, added or removed since the last look.
+        Return the names of files that were changed, added or removed since the last call.
         """
         with self._lock:
             self._look()

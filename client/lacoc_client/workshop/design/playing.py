@@ -1,4 +1,4 @@
-"""Takes a table of /design to a court: to `lacoc practice`."""
+"""Lets a student play with a table of /design, at the court of `lacoc practice`."""
 
 import threading
 from pathlib import Path

@@ -86,7 +86,7 @@ class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
 
 
 class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
-    """Ask the studio what a robot file describes."""
+    """Ask the studio for the sizes and the shape of the robot that a robot file describes."""
 
     robot: SentFile | None = None
 
@@ -141,7 +141,7 @@ class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
 
 
 class PlaceAsk(Ask, frozen=True, kw_only=True, tag="place"):
-    """Tell the other pages of the table which cell this page is at."""
+    """Tell the other pages that have this table open which cell the user of this page is at."""
 
     row: Annotated[int, msgspec.Meta(ge=-1, lt=MAX_KEYS * MAX_POSTURES_PER_KEY)]
     col: Annotated[int, msgspec.Meta(ge=-1, lt=100)]
@@ -173,7 +173,7 @@ class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
 
 
 class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
-    """Check the table, and take it to a court, to practise."""
+    """Check the table, and give it to a court, where the student can play with it."""
 
     table: FileTable
     robot: SentFile | None = None
@@ -254,7 +254,7 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
 
 
 class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
-    """Ask the coach for a map of gaits: one for each speed and arousal (how excited it looks)."""
+    """Ask the coach for gaits of many speeds and arousals (how excited the robot looks)."""
 
     job: _Job
     """Name of the search; see `CoachAsk`."""
@@ -286,7 +286,7 @@ class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
 
 
 class CancelAsk(Ask, frozen=True, kw_only=True, tag="cancel"):
-    """End a search of this page early."""
+    """End early a search of the coach that this page asked for."""
 
     job: _Job
 
@@ -336,7 +336,11 @@ def read(data: bytes) -> Asked:
 
 
 def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
-    """Decode a request with this decoder; raises the same error as `read`."""
+    """Decode a request with this decoder.
+
+    Raises:
+        Unreadable: if the decoder can't decode it.
+    """
     try:
         if len(data) > REQUEST_BYTES:
             most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES

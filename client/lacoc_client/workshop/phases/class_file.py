@@ -233,5 +233,5 @@ def _escaped(name: str) -> str:
 
 
 def _row(evidence: Evidence) -> tuple[str, str]:
-    """Return the kind and the body of evidence, for the columns of the file."""
+    """Return the kind of evidence and the rest of it as JSON, for two columns of the file."""
     return kind_of(evidence), to_json(evidence).decode()

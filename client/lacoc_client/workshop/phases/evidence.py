@@ -238,7 +238,7 @@ def from_json(data: bytes | str) -> Evidence:
 
 
 def edited(before: Rows, after: Rows, version: str, by: By) -> Edited | None:
-    """Find what an edit changed; None if it changed no angle.
+    """Return an edit of a table as evidence; None if it changed no angle.
 
     Args:
         before: the table before the edit.

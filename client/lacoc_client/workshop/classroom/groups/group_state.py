@@ -1,4 +1,4 @@
-"""The state of a group: its members, their roles, and the words for its way of walking."""
+"""The state of a group: its members, their roles, and the words for how its robot should walk."""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal
@@ -11,7 +11,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 Role = Literal["", "forward", "turn"]
-"""What a member designs (workshop 4-2): "forward" the rows 1 to 4, "turn" the rows 5 to 8."""
+"""What a member designs: "forward" the rows 1 to 4, "turn" the rows 5 to 8 of the table."""
 
 MEMBERS_MOST = 4
 GROUPS_MOST = 50
@@ -92,7 +92,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """The word with the most votes, of equal ones the first; "": no word has a vote."""
+        """The word with the most votes; of several, the first. "": no word has a vote."""
         counts = [(self.count(one.word), -at, one.word) for at, one in enumerate(self.words)]
         return max(counts)[2] if counts and max(counts)[0] else ""
 

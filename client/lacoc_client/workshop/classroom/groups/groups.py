@@ -37,7 +37,8 @@ class Groups:
 
     Args:
         store: opens the class file.
-        changed: called after each change; keeps the states, and tells the teacher.
+        changed: called after each change; it writes `states` to the class file, and tells the
+            teacher.
         students: all students, by `same_name` of the nickname.
     """
 
@@ -169,10 +170,10 @@ class Groups:
                 student.send(handed.message())
 
     def spend(self, student: ClassStudent) -> None:
-        """Count a change of groups that a student asks for.
+        """Count a request of a student to change a group.
 
         Raises:
-            UserError: if there were too many.
+            UserError: if this student, or the class, has made too many such requests lately.
         """
         own = self._own_allowances.setdefault(student.name, Allowance(_OWN_HZ, _OWN_BURST))
         now_s = time.monotonic()
@@ -230,7 +231,7 @@ class Groups:
         self.tell(state)
 
     async def _leave(self, student: ClassStudent) -> bool:
-        """Remove a student from the group; return whether the student was in one."""
+        """Remove a student from the student's group; return whether there was such a group."""
         state = self.of(student)
         if state is None:
             return False

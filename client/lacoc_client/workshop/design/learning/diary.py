@@ -1,4 +1,4 @@
-"""Keeps the evidence and the documents of one student."""
+"""Keeps the evidence and the documents (table, tokens) of one student."""
 
 import asyncio
 import time
@@ -118,9 +118,10 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Count a vote and keep that the student voted.
+        """Count the student's vote whether walk A or B fits a word better.
 
-        Do nothing if it is a second vote in this poll.
+        Keep as evidence that the student voted. Do nothing if the student voted in this poll
+        before.
         """
         if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return

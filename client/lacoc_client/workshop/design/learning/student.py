@@ -49,7 +49,7 @@ class Student:
         return self.table.draft
 
     def open_kept(self) -> None:
-        """Open the table that the diary has kept; if there is none, the table stays as it is."""
+        """Load the student's table from the diary; if it has none, the table stays as it is."""
         kept = kept_table(self.diary.documents)
         if kept is not None:
             with suppress(UserError):  # of another version of this program
@@ -97,7 +97,7 @@ class Student:
             self.own.end()
 
     def send_away(self) -> None:
-        """Tell all pages that the student was deleted; from now on their requests are refused."""
+        """Tell the student's pages that the student was deleted; refuse their later requests."""
         message = wire.map_message(MessageKind.FORGOTTEN, {})
         for pages in (self.viewers, self.lessons):
             for viewer in (*pages,):

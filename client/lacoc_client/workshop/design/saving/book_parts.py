@@ -46,7 +46,7 @@ class BookParts:
         return {one.get("name", ""): one.text or "" for one in found}
 
     def packed(self, changed: Mapping[str, bytes], *, formulas: bool, chain: bool) -> bytes:
-        """Return the workbook with changed parts.
+        """Return the bytes of the workbook after some of its parts were changed.
 
         Args:
             changed: name of each changed part -> its content.

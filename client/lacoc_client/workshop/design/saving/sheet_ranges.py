@@ -37,7 +37,7 @@ def with_ranges(xml: bytes, layout: Layout) -> bytes:
 
 
 def _longer(one: str, layout: Layout, last: int) -> str:
-    """Return a range, extended to row `last` if it ends at the table's old last row."""
+    """Extend a range of cells to row `last` if it ends at the table's old last row."""
     left, top, right, bottom = range_boundaries(one)
     if bottom != layout.bottom or top >= bottom or right > layout.columns:
         return one
@@ -45,7 +45,7 @@ def _longer(one: str, layout: Layout, last: int) -> str:
 
 
 def _moved(reference: str, layout: Layout) -> str:
-    """Return a range, moved down with the legend if it lies in the legend."""
+    """Move a range of cells down, as far as the legend moves, if it lies in the legend."""
     left, top, right, bottom = range_boundaries(reference)
     first, stop = layout.legend
     if not (first <= top and bottom < stop and right <= layout.columns):

@@ -117,12 +117,12 @@ class SheetXml:
         return Content(f"<{p}is><{p}t>{escape(text)}</{p}t></{p}is>", "inlineStr")
 
     def copy(self, cell: XmlCell) -> Content:
-        """Return the content of a cell, with its style."""
+        """Return the present content of a cell with its style, to put it into another cell."""
         inner = self.raw(cell.inner_start, cell.inner_end)
         return Content(inner, cell.attributes.get("t", ""), cell.attributes.get("s", ""))
 
     def edited(self, contents: Mapping[Place, Content]) -> bytes:
-        """Return the file with new contents of cells; missing rows and cells are added."""
+        """Return the worksheet's XML with new contents of cells; add missing rows and cells."""
         pieces: list[tuple[int, int, bytes]] = []
         rows: dict[int, dict[int, Content]] = {}
         for (row, column), content in contents.items():

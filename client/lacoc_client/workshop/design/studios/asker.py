@@ -101,7 +101,11 @@ class Asker:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
     async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
-        """Call a function on another thread for each report on a search, until it is closed.
+        """Subscribe to the studio's reports on a search.
+
+        Args:
+            job: name of the search.
+            tell: called with each report, on another thread, until the subscription is closed.
 
         Raises:
             NotNow: if there is no studio.
@@ -110,7 +114,7 @@ class Asker:
         return Listening(session, keys.progress(job), tell)
 
     async def _found(self) -> tuple[Session, StudioKeys]:
-        """Return the session and the studio's keys.
+        """Return the Zenoh session, and the key expressions of the studio.
 
         Wait a moment if the studio is just starting.
         """
