@@ -1,4 +1,4 @@
-"""What the director sees of a court at one time. Pure."""
+"""What the director knows of a court at one time. Pure."""
 
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ OVER = (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
 
 
 class CourtNow(NamedTuple):
-    """How a court stands at one time."""
+    """How the match at a court stands at one time."""
 
     name: str
     match: str
@@ -39,7 +39,7 @@ class CourtNow(NamedTuple):
 
     @property
     def is_close(self) -> bool:
-        """Whether the difference is at most a fifth of all points."""
+        """Whether the seats' points differ by at most a fifth of all points."""
         return len(self.scores) > 1 and abs(self.ahead) <= _CLOSE * sum(map(abs, self.scores))
 
     @property

@@ -32,7 +32,7 @@ class LiveMoment(NamedTuple):
 
 
 class Track:
-    """Follows one court, and finds the moments at it."""
+    """Follows the match at one court, and finds the moments in it."""
 
     def __init__(self, now: CourtNow) -> None:
         self._now = now

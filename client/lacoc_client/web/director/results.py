@@ -1,4 +1,4 @@
-"""The newest result of each court, shown as late as everything else. Pure."""
+"""The newest result of each court, shown as late as the director shows matches. Pure."""
 
 from collections import deque
 from collections.abc import Sequence

@@ -43,7 +43,7 @@ class PageFiles:
         return (self._folder / "index.html").is_file()
 
     def find(self, name: str) -> PageFile | None:
-        """Return a file by its path in the folder; None if there is none, or it lies outside."""
+        """Return a file by its path in the folder; None if it does not exist or lies outside."""
         try:
             path = (self._folder / name).resolve()
             if not path.is_relative_to(self._folder) or not path.is_file():

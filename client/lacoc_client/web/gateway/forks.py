@@ -141,7 +141,9 @@ def bots(record: Path) -> list[str]:
 
 
 def _check_players(record: Path, players: tuple[str, ...]) -> None:
-    """Check that each player is the name of a known bot: a file's name would let its code run.
+    """Check that each player is the name of a known bot.
+
+    A page could else name a file, and the file's code would run.
 
     Raises:
         UserError: if a player is no known bot.
@@ -165,10 +167,7 @@ def _words(record: Path, asked: ForkAsk, folder: Path) -> list[str]:
 
 
 async def _output(process: Process) -> tuple[bytes, bytes]:
-    """Read everything that a process prints, until it ends.
-
-    Keep its standard input open meanwhile.
-    """
+    """Read what a process prints, until it ends; meanwhile keep its standard input open."""
     assert process.stdout is not None
     assert process.stderr is not None
     out, errors = await asyncio.gather(process.stdout.read(), process.stderr.read())

@@ -1,4 +1,4 @@
-"""Limits how often requests of each sender pass, and slows down machines that try codes."""
+"""Limits the requests of each sender, and slows down machines that try one code after another."""
 
 from collections import OrderedDict
 

@@ -7,7 +7,7 @@ from lacoc_client.web.gateway.wire import MessageKind, map_message
 
 
 class Notice:
-    """The message to all pages, from the newest sheet of a contest; used from one thread at a time.
+    """The organiser's message to all pages, from the contest's newest sheet; not thread-safe.
 
     Args:
         sheet: the sheet's file, which need not exist yet; None: there is no contest.

@@ -125,10 +125,7 @@ class PageSeat:
         return await threads.run(ask)
 
     def leave(self) -> None:
-        """Stop repeating the command, because the page has gone.
-
-        The team does not give up the seat.
-        """
+        """Stop steering the robot, because the page has gone; the team keeps the seat."""
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
@@ -141,7 +138,10 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """Return seat access, team name and files; take from the prefill what the page left out."""
+        """Return how to reach the seat, the team's name, and the robot and gait files.
+
+        What the page left out was given on the command line (`Prefill`).
+        """
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill if self._viewer.is_own else None

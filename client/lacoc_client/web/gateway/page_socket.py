@@ -1,5 +1,7 @@
 """uvicorn's connections, extended for hundreds of pages and against clients that only block them.
 
+Here a frame is a WebSocket frame: the bytes of one message to a page.
+
 A message to all pages is made once, as the bytes of its WebSocket frame, and written to each page.
 Through ASGI, each of 300 pages would need a task switch 25 times a second. A socket also notices
 whether its page keeps up, so that a page gets no more than it can take.
@@ -34,7 +36,10 @@ CONNECTIONS_MOST = 500
 
 
 class PageSocket(WebSocketsSansIOProtocol):
-    """A WebSocket to which finished frames are written; `websocket.state.socket` is this object."""
+    """A WebSocket to which finished WebSocket frames are written.
+
+    For the application it is `websocket.state.socket`.
+    """
 
     heard_s = 0.0
     """Time when the page last sent anything, on the loop's clock."""
@@ -69,7 +74,7 @@ class PageSocket(WebSocketsSansIOProtocol):
 
     @property
     def keeps_up(self) -> bool:
-        """True if everything written has been sent and the page answers its pings."""
+        """True if no written bytes wait for the page, and the page answers its pings."""
         if self.transport.get_write_buffer_size():
             return False
         if self.pending_ping_payload is None:
@@ -77,7 +82,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         return self.loop.time() - self.ping_sent_at < _UNANSWERED_S
 
     def write(self, framed: bytes) -> None:
-        """Send a finished frame, even if earlier frames still wait."""
+        """Send a finished WebSocket frame, even if earlier ones still wait to be sent."""
         if self.close_sent or self.transport.is_closing():
             return
         if self.transport.get_write_buffer_size() > KEPT_BYTES:

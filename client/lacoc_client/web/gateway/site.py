@@ -60,7 +60,7 @@ _MCAP = "application/octet-stream"
 
 
 class More(Protocol):
-    """Pages of another part of the program that a gateway serves too."""
+    """Further pages, from another part of the program, that a gateway serves."""
 
     paths: Sequence[str]
     """Paths of these pages."""
@@ -74,7 +74,7 @@ class More(Protocol):
 
 
 def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
-    """Make the application of a gateway.
+    """Make the web application of a gateway.
 
     Args:
         home: the gateway's settings.
@@ -226,7 +226,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
 def page_routes(
     files: PageFiles, paths: Sequence[str], others: Iterable[BaseRoute], title: str = ""
 ) -> list[BaseRoute]:
-    """Return the routes of a site with pages.
+    """Return the routes of a web site that has some of the built pages.
 
     Args:
         files: the built pages.
@@ -256,7 +256,7 @@ def page_routes(
         return _not_found(request) if file is None else file_response(request, file, FOR_EVER)
 
     async def top_file(request: Request) -> Response:
-        """Serve a file that stands beside index.html.
+        """Serve a file of the built pages that lies beside index.html.
 
         The icon can be fetched by its old name too.
         """
@@ -265,7 +265,7 @@ def page_routes(
         return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
 
     async def healthz(request: Request) -> Response:
-        """Answer that the gateway runs, and how the request came here through proxies."""
+        """Answer that the gateway runs, and what the request looked like after any proxies."""
         forwarded = request.headers.get("x-forwarded-for", "")
         asks = [one.strip() for one in forwarded.split(",") if one]
         health = GatewayHealth(

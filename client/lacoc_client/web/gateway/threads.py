@@ -1,4 +1,4 @@
-"""Threads for calls that wait for a court, so that the event loop does not wait for it."""
+"""Threads on which calls wait for a court's answer, so that the event loop need not wait."""
 
 import asyncio
 from collections.abc import Callable

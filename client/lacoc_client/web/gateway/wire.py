@@ -115,7 +115,7 @@ class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
 
 
 class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
-    """Take a seat."""
+    """Take a seat for a team."""
 
     seat: _Short
     token: _Token | None = None
@@ -252,7 +252,7 @@ def read(data: bytes) -> Asked:
 
 
 def do_of(data: bytes) -> str:
-    """Return the kind of a request (`do`), when its other fields can't be read.
+    """Return the kind of a request (its field `do`), without reading its other fields.
 
     Raises:
         msgspec.DecodeError: if it has no kind.
@@ -291,18 +291,18 @@ def message(kind: MessageKind, payload: bytes) -> bytes:
 
 
 def inside(framed: bytes) -> bytes:
-    """Take off the WebSocket frame of a message that `message` made; return kind and payload."""
+    """Undo `message`: return the byte of the kind and the payload, without the WebSocket frame."""
     return framed[{126: 4, 127: 10}.get(framed[1], 2) :]
 
 
 def opened(framed: bytes) -> tuple[MessageKind, bytes]:
-    """Return kind and payload, separately, of a message that `message` made."""
+    """Undo `message`: return the kind of message and the payload, as two values."""
     data = inside(framed)
     return MessageKind(data[0]), data[1:]
 
 
 def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:
-    """Make a WebSocket frame with a message of the gateway itself, a msgpack map."""
+    """Make the WebSocket frame of a message whose payload the gateway writes as a msgpack map."""
     return message(kind, encode(value))
 
 
@@ -327,12 +327,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
 
 def reply(to: int, value: Any) -> bytes:
-    """Make the reply to a request that was done."""
+    """Make the reply to the request with the number `to`, which was done."""
     return map_message(MessageKind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
-    """Make the reply to a request that was refused."""
+    """Make the reply to the request with the number `to`, which was refused."""
     mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,

@@ -14,7 +14,7 @@ _BORDER = 4
 
 
 class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
-    """A team's link."""
+    """A link that opens the page of a team."""
 
     team: str
     link: str
