@@ -178,7 +178,7 @@ def _play_match(
 
 
 def _ground(controller: Controller, arena: str | None) -> Arena:
-    """Return the arena that has the bot: the named one, else the arena that the court plays."""
+    """Return the arena whose bot plays: the named arena, else the one that the court plays."""
     sheet = controller.view.sheet
     return arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
 
@@ -186,9 +186,9 @@ def _ground(controller: Controller, arena: str | None) -> Arena:
 def _brings(
     name: str, robot: str | None, gaits: list[Path], notes: list[Phrase]
 ) -> tuple[SeatFiles, str]:
-    """Return a bot's files and its team name.
+    """Return the robot and gait files that a bot plays with, and its team name.
 
-    A ghost has the files of its recorded match, unless others are given.
+    A ghost has the files of its recorded match, unless the user gave others.
     """
     if not name.startswith(brains.GHOST):
         return gather(robot, gaits, notes), text_of(Path(name).stem)

@@ -1,4 +1,4 @@
-"""`lacoc class`: a class designs gaits in the browser (workshop 3-2, 4-1, 4-2)."""
+"""`lacoc class`: a class designs gaits in the browser, as in the workshop."""
 
 import asyncio
 import shutil

@@ -379,7 +379,7 @@ def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
 
 
 def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
-    """Return the question whether to change a score, with the scores before and after.
+    """Return the question to the referee whether to change a score, with both scores.
 
     None: the match has not two seats, or not this seat.
     """
@@ -448,7 +448,7 @@ def _decide_when_legal(
 
 
 def _look(view: Spectator) -> tuple[Frame, Health]:
-    """Wait until a court has sent a frame and its health, and return both.
+    """Wait until a court has sent a frame and its health, and return the two.
 
     Raises:
         UserError: if the court sends no health.

@@ -53,7 +53,7 @@ class Drawing:
         return _got(self._ends)
 
     def begin(self, pictures: Sequence[Picture], fps: int) -> None:
-        """Begin to draw this browser's part of the pictures; may be called once."""
+        """Begin to draw this browser's part of a film's pictures; may be called once."""
         self._wanted.put((pictures, fps))
 
     def sound(self) -> bytes:
@@ -108,7 +108,7 @@ class Drawing:
 
 
 class Crew:
-    """All browsers that draw one record; `drawn_by` makes it."""
+    """All browsers that together draw one record; `drawn_by` makes a crew."""
 
     def __init__(self, drawings: Sequence[Drawing]) -> None:
         self._drawings = drawings
@@ -144,7 +144,7 @@ class Crew:
 
 @contextlib.contextmanager
 def drawn_by(count: int, address: str, look: Look) -> Iterator[Crew]:
-    """Open some browsers with the page of a record; they end with the block.
+    """Open some browsers with the page of a record, until the `with` block ends.
 
     Args:
         count: how many.

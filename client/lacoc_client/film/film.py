@@ -147,7 +147,7 @@ def _add(
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures for a still: those of the time just before its beat, and of the beat.
+    """Return the pictures that the page must show for a still: some before its beat, and its own.
 
     The earlier pictures let the automatic camera move to where it must be at the beat.
 

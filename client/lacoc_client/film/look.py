@@ -1,4 +1,4 @@
-"""How a film looks."""
+"""How a film looks: size, camera, quality, texts."""
 
 from dataclasses import dataclass
 from enum import StrEnum

@@ -130,7 +130,7 @@ class Movie:
 
 @contextmanager
 def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> Iterator[Movie]:
-    """Open a film for writing; when the block has ended, the film is at `out`.
+    """Open a film for writing; when the `with` block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
     file of this name stays. When the film is complete, an older file is kept under a numbered name.

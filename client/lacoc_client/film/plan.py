@@ -1,4 +1,4 @@
-"""Which beats of a match a film shows, picture by picture."""
+"""Decides which beats of a match a film shows, picture by picture."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -56,7 +56,7 @@ class BotPlayer:
         self._pressed = controller.press(int(key.level), key.key), key
 
     def _is_on_its_way(self, key: Key, answered_seq: int) -> bool:
-        """Return whether this was the last key pressed and the court has not answered it yet."""
+        """Return whether the bot pressed this key last, and the court has not reacted to it yet."""
         return (
             self._pressed is not None
             and self._pressed[1] == key

@@ -46,7 +46,7 @@ class BeginLine(OutputLine, frozen=True, tag="begin"):
 
 
 class MatchResult(msgspec.Struct, frozen=True):
-    """The part of a record's result that is needed here."""
+    """The part of a match's result that is needed here."""
 
     scores: tuple[int, int]
     official: str
@@ -123,7 +123,7 @@ class Simulation:
             reading.cancel()
 
     async def complaint(self) -> str | None:
-        """Wait until the command has ended; return the error that it printed, or None."""
+        """Wait until the command has ended; return the error that it printed; None if none."""
         while self._process.returncode is None:
             await asyncio.sleep(_LOOK_S / 10)
         if self._process.returncode == 0:

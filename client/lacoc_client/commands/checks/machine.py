@@ -46,7 +46,7 @@ _ASK_S = 1.0
 
 
 class Status(StrEnum):
-    """How serious a finding is."""
+    """How serious a finding of a check is."""
 
     OK = "ok"
     NOTE = "note"
@@ -55,7 +55,7 @@ class Status(StrEnum):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """One finding: what it is about, how serious it is, and what to do."""
+    """One finding of a check: what it is about, how serious it is, and what to do."""
 
     about: Phrase | str
     status: Status

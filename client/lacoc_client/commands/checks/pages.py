@@ -1,4 +1,4 @@
-"""Checks the public address of pages as a browser reaches it: its name, certificate, WebSocket."""
+"""Checks the public address of an event's pages: its name, certificate and WebSocket."""
 
 import http.client
 import socket
@@ -36,7 +36,7 @@ class _PageAnswer(NamedTuple):
 
 
 def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
-    """Check the public address of pages.
+    """Check the public address of an event's pages, as a browser reaches it.
 
     Args:
         public: how others reach the pages; it has an address.

@@ -61,7 +61,7 @@ class Sender:
         self._thread.start()
 
     def show(self, picture: LivePicture) -> None:
-        """Put a picture in the queue, or leave it out if the queue is full."""
+        """Put a picture into the queue to the encoder, or leave it out if the queue is full."""
         try:
             self._waiting.put_nowait(picture)
         except Full:
@@ -78,7 +78,7 @@ class Sender:
             self._mixer.add(round(at_s * SOUND_HZ), samples)
 
     def end(self) -> None:
-        """Send the pictures that wait, then end the stream."""
+        """Send the pictures that are still in the queue, then end the stream."""
         self._ending.set()
         self._thread.join(10 * _AGAIN_S)
 
@@ -110,7 +110,7 @@ class Sender:
             return None
 
     def _send(self, was_away: bool) -> None:
-        """Open the target, and send pictures and sounds until the stream ends.
+        """Open the stream's target, and send it pictures and sounds until the stream ends.
 
         Raises:
             OSError: if the target can't be written.

@@ -57,7 +57,7 @@ class Report:
 
 
 class _Streaming:
-    """A stream that is running."""
+    """Draws and sends one stream."""
 
     def __init__(
         self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
@@ -92,7 +92,7 @@ class _Streaming:
                     time.sleep(_AGAIN_S)
 
     def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
-        """Open the page; try again until it opens.
+        """Open the broadcast's page; try again until it opens.
 
         Raises:
             Error: if the browser has ended.

@@ -35,7 +35,7 @@ class Target:
 
     @property
     def shown(self) -> str:
-        """The address for messages, without its last part: that is the stream's secret key."""
+        """The address as messages show it: without its last part, the stream's secret key."""
         return f"{self.address.rpartition('/')[0]}/..." if self.is_remote else self.address
 
 

@@ -57,7 +57,7 @@ class KeySource(Protocol):
         """
 
     def take_said(self) -> list[Phrase]:
-        """Return what was wrong with the input since the last call, as sentences."""
+        """Return what was wrong with the keys that came since the last call, as sentences."""
 
 
 class KeyDecoder:
@@ -97,7 +97,7 @@ def key_name(character: str) -> str | None:
 
 @contextmanager
 def open_keys() -> Iterator[KeySource]:
-    """Read keys from standard input: a terminal's as they are pressed, or a script from a pipe."""
+    """Read keys from standard input: as they are pressed at a terminal, or a script in a pipe."""
     if not sys.stdin.isatty():
         yield PipeKeys(sys.stdin.fileno())
     elif sys.platform == "win32":

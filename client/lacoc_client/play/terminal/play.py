@@ -1,4 +1,4 @@
-"""Holds a seat from a terminal: reads keys and draws the match (rules 3)."""
+"""Lets a contestant play at a terminal: reads the keys and draws the match."""
 
 import time
 from collections import deque
@@ -101,7 +101,7 @@ class TerminalPlay:
         return False
 
     def _step(self) -> list[Text]:
-        """Read keys, frames and events once; return the lines to print above the live picture."""
+        """Read the keys, frames and events that came; return lines to print above the picture."""
         controller = self._controller
         frame = self._view.frame
         playing = frame is not None and frame.phase == Phase.PLAYING
@@ -155,7 +155,7 @@ class TerminalPlay:
             self._say(say("terminal.arrows"))
 
     def _change_level(self) -> None:
-        """Change to the next open level; this sends nothing to the court."""
+        """Let the digits mean the next level that this match allows; send nothing to the court."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
             self._say(say("terminal.only-level", level=_LEVEL_NAMES[self._level]))
@@ -261,7 +261,7 @@ class TerminalPlay:
         return Text(state, "cyan") if state else Text(render(say("terminal.help")), "dim")
 
     def _leave(self) -> None:
-        """Give the seat up, and write Pos-data.txt if the contestant asked for it."""
+        """Give the seat up, and write the robot's motion (Pos-data.txt) if the contestant asked."""
         controller = self._controller
         if self._view.silent_s(time.monotonic()) < 1.0 and controller.hold is Hold.HELD:
             try:

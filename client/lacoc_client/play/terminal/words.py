@@ -16,7 +16,7 @@ def phase_name(phase: Phase) -> str:
 
 
 def clock(ticks: int) -> str:
-    """Format a time of the match clock, rounded up to a second, such as "2:05"."""
+    """Format a time in ticks, rounded up to whole seconds, such as "2:05"."""
     seconds = -(-max(0, ticks) // BEATS_PER_S)
     return f"{seconds // 60}:{seconds % 60:02d}"
 
@@ -116,7 +116,7 @@ def place(frame: Frame, sheet: Sheet, seat: str) -> str:
 
 
 def seat_state(seat: SeatFrame) -> str:
-    """Return why a seat's keys do nothing now, or that the seat is silent; "" in other cases."""
+    """Return why a seat's keys have no effect now, or that the seat is silent; "": neither."""
     flags = SeatFlag(seat.flags)
     if SeatFlag.FROZEN in flags:
         return render(say("terminal.frozen", seconds=_wait_s(seat)))
