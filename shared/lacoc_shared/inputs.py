@@ -41,13 +41,13 @@ class ReadySeat(_Input, frozen=True, tag="ready"):
 
 
 class LeaveSeat(_Input, frozen=True, tag="leave"):
-    """A contestant left."""
+    """A contestant gave up the seat."""
 
     seat: int
 
 
 class KeySeat(_Input, frozen=True, tag="key"):
-    """A new command of a seat: a digit at a level, or `RESTART_KEY`."""
+    """A player pressed a key of a seat: a digit at a level, or `RESTART_KEY`."""
 
     seat: int
     seq: int
@@ -76,7 +76,7 @@ class HeardSeat(_Input, frozen=True, tag="heard"):
 
 
 class Decide(_Input, frozen=True, tag="decide"):
-    """A referee, or the court itself, decided."""
+    """A referee, or the court itself, made a decision about the match."""
 
     by: str
     """The referee's name; `THE_COURT` for the court itself."""

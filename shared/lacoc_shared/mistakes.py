@@ -101,7 +101,7 @@ class FileRefused(ValueError):
 
 
 class UserError(Exception):
-    """A mistake that a user can correct; the message says how.
+    """Raised for a mistake that a user can correct; the message says how.
 
     Args:
         said: what was found and what to do, a sentence for each mistake; a plain text if the table
@@ -121,7 +121,10 @@ class UserError(Exception):
         return only if isinstance(only, Phrase) else say("plain.text", text=only)
 
     def each(self, put: Callable[[Phrase | str], Phrase]) -> "UserError":
-        """Return an error with each sentence put into another one, which may add a place."""
+        """Return an error whose sentences are those of this one, each changed by `put`.
+
+        So a caller can add a place to each sentence, such as the name of a file.
+        """
         return UserError(*map(put, self.said))
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""Seats, phases, and the small numbers by which frames describe them."""
+"""The seats and phases of a match, and the small numbers that stand for them in frames."""
 
 from enum import IntEnum, IntFlag
 from typing import Annotated, Literal
@@ -37,7 +37,7 @@ IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 
 
 class SeatFlag(IntFlag):
-    """Properties of a seat at a beat."""
+    """What holds for a seat at a beat; a frame has a bit for each."""
 
     JOINED = 1
     READY = 2

@@ -58,7 +58,7 @@ class StudioKeys:
 
 
 class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The files of a request, in the format of a join: text, no workbooks."""
+    """The robot and gait files of a request to a studio: text, no workbooks."""
 
     robot: SentFile | None = None
     """Robot file; None: the workshop's hexapod."""
@@ -139,7 +139,7 @@ class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Sentence(msgspec.Struct, frozen=True, kw_only=True):
-    """One sentence that explains a walk."""
+    """One sentence of the explanation why a robot walked as it did in a trial."""
 
     said: Phrase
     """The sentence (`explain.*`)."""
@@ -216,7 +216,7 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a map of gaits: one for each speed and arousal (how excited it looks)."""
+    """Ask for a table of gaits: one for each speed and arousal (how excited the robot looks)."""
 
     protocol: int
     job: str
@@ -275,7 +275,7 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Weight(msgspec.Struct, frozen=True, kw_only=True):
-    """How a change of one number would change the score."""
+    """How much the score of a gait would change if one number of it were changed."""
 
     cell: CellPlace
     up: float
@@ -351,7 +351,7 @@ class OtherGait(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapCell(msgspec.Struct, frozen=True, kw_only=True):
-    """A cell of a map, and the best gait that was found for it."""
+    """A cell of the table of speeds and arousals, with the best gait that was found for it."""
 
     speed: int
     arousal: int
@@ -360,7 +360,7 @@ class MapCell(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapReply(msgspec.Struct, frozen=True, kw_only=True):
-    """A map of gaits."""
+    """A table of gaits by speed and arousal, as the coach found them."""
 
     key: int
     speeds_mm_s: tuple[float, ...]

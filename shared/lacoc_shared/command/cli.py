@@ -71,7 +71,7 @@ class _Commands(UserDict[str, Any]):
 
     @contextmanager
     def only_list(self) -> Iterator[None]:
-        """In the block, return commands with the help of the listing, without importing them."""
+        """Return stand-ins for commands, and import nothing, until the `with` block ends."""
         self._only_lists = True
         try:
             yield
@@ -131,7 +131,7 @@ def _is_ours(entry: EntryPoint) -> bool:
 
 
 def _listed(name: str, listed: ListedCommand) -> TyperCommand:
-    """Make a stand-in for a command that is not imported, for a list of commands."""
+    """Make a stand-in for a command that was not imported; lists of commands show it."""
     panel = help_text.in_words(listed.panel) or None
     return TyperCommand(name, help=listed.in_words(), rich_help_panel=panel)
 

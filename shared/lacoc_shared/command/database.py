@@ -57,7 +57,7 @@ def connect(
 
 
 def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-    """Return the exception to raise for an error of SQLite.
+    """Return the exception that a program raises in place of an error of SQLite.
 
     Args:
         path: the database file.

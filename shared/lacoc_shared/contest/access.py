@@ -6,7 +6,7 @@ import msgspec
 
 
 class Access(msgspec.Struct, frozen=True, kw_only=True):
-    """How a client reaches a court, and with which token."""
+    """How a client reaches a court, and the token that the client shows there."""
 
     court: str
     connect: str

@@ -1,4 +1,4 @@
-"""The tables of a contest file that name machines: those of courts, and of the second machine."""
+"""The tables of a contest file about machines: one for each court, one for a second machine."""
 
 import itertools
 from pathlib import Path
@@ -73,7 +73,9 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         return self.elsewhere or self._address_here(any_host)
 
     def stand_in(self, any_host: str = "127.0.0.1") -> str:
-        """Return the address for clients when the office's machine takes the place of the court's.
+        """Return the clients' address for the case that the office's machine runs this court.
+
+        This happens when the machine that usually runs the court is gone.
 
         Args:
             any_host: as in `address`.
@@ -92,7 +94,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The second machine: it copies everything that the office keeps, so that it can take over.
+    """The second machine: it copies all files of the office, so that the office can go on there.
 
     Copies are encrypted with a key that is made from a token, which itself is never sent.
     """
@@ -107,7 +109,7 @@ class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 def wrong_in(table: str, error: UserError) -> UserError:
-    """Return an error with the name of a table of the contest file before each of its sentences."""
+    """Return an error that has the name of a contest file's table before each of its sentences."""
     return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
 
 
@@ -185,7 +187,7 @@ def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> Non
 
 
 def beside(folder: Path, name: str) -> str:
-    """Return the full path of a path in the contest file; return an installed name unchanged.
+    """Return the full path for a path in the contest file; leave an installed name unchanged.
 
     Args:
         folder: folder of the contest file.

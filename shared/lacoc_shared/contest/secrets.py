@@ -54,10 +54,7 @@ class Secrets:
 
     @property
     def standby(self) -> str:
-        """Token from which a key is made.
-
-        With this key the second machine's copies are encrypted.
-        """
+        """Token from which the key is made that encrypts the copies for the second machine."""
         return self._of(_STANDBY)
 
     @property
@@ -118,7 +115,9 @@ class Secrets:
         self._change(lambda there: {name: one for name, one in there.items() if name not in gone})
 
     def check_copied(self, *courts: str) -> None:
-        """Check that this file was copied from the office: on another machine no token may be made.
+        """Check that this file is a copy of the office's file: it has all tokens that it needs.
+
+        On another machine than the office's, no token may be made.
 
         Args:
             courts: courts whose referees have tokens.
@@ -170,7 +169,7 @@ class Secrets:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[None]:
-    """Keep other programs from changing the tokens until the block ends."""
+    """Keep other programs from changing the tokens until the `with` block ends."""
     with path.open("ab") as lock:
         end_s = time.monotonic() + _WAIT_S
         while not hold(lock):
@@ -181,7 +180,7 @@ def _alone(path: Path) -> Iterator[None]:
 
 
 def _state(path: Path) -> tuple[int, int] | None:
-    """Return numbers that change each time the file is replaced; None: there is no file."""
+    """Return two numbers that change when the file is replaced; None: there is no file."""
     try:
         found = path.stat()
     except FileNotFoundError:

@@ -84,7 +84,12 @@ def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[s
 
 
 def _choices(kind: Any, place: str) -> list[str]:
-    """Return the words that are possible for the entry at a place; none if they are not known."""
+    """Return the words that an entry may have as its value; an empty list if they are not known.
+
+    Args:
+        kind: the type of the whole table.
+        place: place of the entry in the table, such as "match.start".
+    """
     for name in place.split("."):
         fields = get_type_hints(kind) if isinstance(kind, type) else {}
         kind = fields.get(name)

@@ -1,4 +1,4 @@
-"""Reads the cells of a gait file, and lists every mistake in them (rules 2)."""
+"""Makes a gait from the cells of a gait file, and lists every mistake in them."""
 
 import math
 import re
@@ -92,7 +92,7 @@ def _largest_deg(table: PostureTable | LocomotionTable) -> float:
 
 
 class _TableReader:
-    """Reads one file and collects its mistakes."""
+    """Reads the cells of one gait file, and collects the mistakes in them."""
 
     def __init__(self, file: str, legs: Legs, range_deg: Range, headers: Phrase) -> None:
         self._file = file
@@ -156,7 +156,7 @@ class _TableReader:
         )
 
     def _postures(self, rows: list[Row]) -> PostureTable:
-        """Read Loco-data: the number of postures, a row for each, and perhaps legend rows."""
+        """Read postures (level A): their number, a row for each, and perhaps a legend."""
         body = list(rows)
         announced = None
         if _POSTURES_HEADER.fullmatch(rows[0].cells[0]):
@@ -209,7 +209,7 @@ class _TableReader:
         return PostureTable(postures)
 
     def _locomotion(self, rows: list[Row]) -> LocomotionTable:
-        """Read LocoTra-data: the number of keys, then for each key a count and its postures."""
+        """Read locomotion (level B): the number of keys, then for each a count and its postures."""
         header, *body = rows
         keys = self._count(header, 1, MAX_KEYS, say("gait.number-of-keys"))
         groups: list[tuple[Row | None, list[Row]]] = []

@@ -91,7 +91,7 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
-    """A seat's newest key; the controller repeats it 10 times a second with the same number."""
+    """A seat's newest key; the controller sends it 10 times a second, with the same number."""
 
     session: int
     """Number that the court gave in its reply to the join."""
@@ -156,7 +156,7 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers, after `seq`."""
+        """The numbers of this request that its seal proves, besides `session` and `seq`."""
         return (int(self.ready),)
 
 
@@ -191,7 +191,7 @@ class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers, after `seq`."""
+        """The numbers of this request that its seal proves, besides `session` and `seq`."""
         pressed = [number for key in self.keys for number in (key.tick, key.level, key.key)]
         return (int(self.drawn), self.first, self.until, *pressed)
 
@@ -265,7 +265,7 @@ Outcome = Done | DecisionReply | Refusal
 
 
 class Event(msgspec.Struct, frozen=True, kw_only=True):
-    """Something that happened; numbered, and never lost."""
+    """Something that happened in a match; events are numbered, so that a lost one is noticed."""
 
     number: int
     """Number of the event in its match, from 1."""
@@ -379,7 +379,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body of the scene; `Frame.poses` has the pose of a robot's root body and joint angles."""
+    """A body of the scene. `Frame.poses` has the pose of a robot's root body, and joint angles."""
 
     name: str
     parent: int
@@ -424,7 +424,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Gains(msgspec.Struct, frozen=True, kw_only=True):
-    """What a robot would gain next from its present place."""
+    """Which points a robot could gain next, from the place where it is now."""
 
     said: Phrase | None = None
     """For the robot's player: where the robot comes from and what it can do next (`gains.*`)."""
@@ -500,7 +500,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of the court; sent twice a second, and at once when `gains` changes."""
+    """How a court and its links work now; sent twice a second, and at once when `gains` changes."""
 
     match: int
     beat: int

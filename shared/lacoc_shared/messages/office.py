@@ -63,7 +63,10 @@ class AssignedSeat(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Assigned(msgspec.Struct, frozen=True, kw_only=True):
-    """What the office assigned, as the match's setup keeps it for a restarted court."""
+    """The match that the office assigned to a court, as the match's record keeps it.
+
+    So a restarted court finds it again.
+    """
 
     call: str
     """Id of the call, which is unique in the contest. "": the office gave no call. Then the court
@@ -123,7 +126,7 @@ class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: play this match as the next one."""
+    """A request of the office to a court: play this match as the next one."""
 
     call: Call
     fixture: Phrase
@@ -143,7 +146,7 @@ class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: close this match, so that it is void."""
+    """A request of the office to a court: close this match, so that it is void."""
 
     call: Call
     begun: bool = False
@@ -153,7 +156,7 @@ class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: send the next part of a match's record.
+    """A request of the office to a court: send the next part of a match's record.
 
     The office sends this again and again, and so gets a copy of what a court on another machine
     records.
@@ -177,7 +180,7 @@ class Copied(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Retire(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: end your process, because this court goes on at another machine."""
+    """A request of the office to a court: end, because this court goes on at another machine."""
 
 
 class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
@@ -218,7 +221,7 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: here is where all teams and open seats are.
+    """A message of the office to a court: where each team plays, and where each open seat is.
 
     It replaces what the office told before.
     """

@@ -65,7 +65,7 @@ class Certificate:
         raise UserError(say("public.wrong-certificate", files=names, why=why))
 
     def _versions(self) -> list[tuple[int, int]]:
-        """Return times and sizes of the files; zeros for a file that is missing."""
+        """Return the time of change and the size of both files; zeros for a missing file."""
         found = []
         for file in self._files:
             try:

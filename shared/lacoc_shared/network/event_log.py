@@ -28,7 +28,7 @@ class EventLog(Generic[T]):
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Return whether events are missing here, or differ from those of the court.
+        """Return whether these events are not the court's: some are missing, or there are others.
 
         Args:
             match: number of the open match, from the court's `Health` message.
@@ -47,7 +47,7 @@ class EventLog(Generic[T]):
         return newest.number < number or (newest.number > number and not came_later)
 
     def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
-        """Replace all known events with the court's list of events.
+        """Replace all known events by the list of events that the court has sent.
 
         Returns:
             The events of the list that were not known, in order.

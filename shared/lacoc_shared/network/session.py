@@ -1,4 +1,4 @@
-"""The only access to Zenoh: courts and clients exchange bytes here, with typed errors.
+"""The only module that uses Zenoh: courts and clients exchange bytes through its sessions.
 
 A court polls: its subscribers and queryables are ring buffers that it empties once a beat. So all
 of the court's code runs on its own thread, in an order that the court decides. A client may wait:
@@ -35,15 +35,15 @@ class NotConnected(UserError):
 
 
 class NoReply(Exception):
-    """Nobody answered: there is no such court, the request is not allowed, or time was up."""
+    """Nobody answered a request: no such court, a request that is not allowed, or too late."""
 
 
 class TooLate(NoReply):
-    """The other end did not answer in time; it may still have done what it was asked to do."""
+    """Nobody answered a request in time; it may still have been carried out."""
 
 
 class Refused(Exception):
-    """The answer was an error; `payload` has its bytes."""
+    """A request was answered with an error; `payload` has the bytes of the error."""
 
     def __init__(self, payload: bytes) -> None:
         super().__init__(f"refused with {len(payload)} bytes")
@@ -62,13 +62,13 @@ class Publisher:
 
 
 class Ring:
-    """The newest messages of a subscription, polled by its owner."""
+    """Keeps the newest messages of a subscription until its owner takes them; it never waits."""
 
     def __init__(self, subscriber: "zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]") -> None:
         self._subscriber = subscriber
 
     def take(self) -> bytes | None:
-        """Return the oldest message in the ring, or None; never blocks."""
+        """Return the oldest message that was not taken yet; None if there is none. Never blocks."""
         sample = self._subscriber.try_recv()
         return None if sample is None else sample.payload.to_bytes()
 
@@ -82,7 +82,7 @@ class Mail(NamedTuple):
 
 
 class Mailbox:
-    """The newest messages of a subscription, stored while its only reader does other things."""
+    """Keeps the newest messages of a subscription until its reader takes them, or waits for one."""
 
     def __init__(self, depth: int, notify: Callable[[], None] | None = None) -> None:
         self._mails: deque[Mail] = deque(maxlen=depth)
@@ -104,7 +104,7 @@ class Mailbox:
             self._notify()
 
     def take(self) -> Mail | None:
-        """Return the oldest message in the mailbox, or None."""
+        """Return the oldest message that was not taken yet; None if there is none."""
         return self._mails.popleft() if self._mails else None
 
     def wait(self, timeout_s: float) -> bool:
@@ -114,7 +114,7 @@ class Mailbox:
 
 
 class Question:
-    """A request that was sent, and its answer."""
+    """A request that this session has sent, and its answer once it has come."""
 
     def __init__(self, key: str, replies: "zenoh.Handler[zenoh.Reply]") -> None:
         self._key = key
@@ -150,9 +150,9 @@ class Question:
 
 
 class Request:
-    """A request that came in and waits for its answer.
+    """A request that this session has received and must answer.
 
-    If it gets none, the sender gets `NoReply`.
+    If it is never answered, its sender gets `NoReply`.
     """
 
     def __init__(self, query: zenoh.Query) -> None:
@@ -167,19 +167,19 @@ class Request:
             query.reply(self.key, payload)
 
     def refuse(self, payload: bytes) -> None:
-        """Answer with an error."""
+        """Answer the request with an error."""
         with self._query as query:
             query.reply_err(payload)
 
 
 class RequestQueue:
-    """The waiting requests under one key expression, polled by their owner."""
+    """Keeps the requests under one key expression until their owner takes and answers them."""
 
     def __init__(self, queryable: "zenoh.Queryable[zenoh.Handler[zenoh.Query]]") -> None:
         self._queryable = queryable
 
     def take(self) -> Request | None:
-        """Return the oldest waiting request, or None; never blocks."""
+        """Return the oldest request that was not taken yet; None if there is none. Never blocks."""
         while (query := self._queryable.try_recv()) is not None:
             request = Request(query)
             if "*" not in request.key:  # a request must name one seat or one decision
@@ -220,12 +220,12 @@ class Session:
         return Publisher(self._session.declare_publisher(key))
 
     def ring(self, key: str, depth: int) -> Ring:
-        """Subscribe for polling; the newest `depth` messages are kept."""
+        """Subscribe to a key expression; the ring keeps the newest `depth` messages for polling."""
         channel: RingChannel[zenoh.Sample] = RingChannel(depth)
         return Ring(self._session.declare_subscriber(key, channel))
 
     def mailbox(self, key: str, depth: int, notify: Callable[[], None] | None = None) -> Mailbox:
-        """Subscribe for waiting or polling; the newest `depth` messages are kept.
+        """Subscribe to a key expression; the mailbox keeps the newest messages, to wait or poll.
 
         Args:
             key: key expression.
@@ -239,15 +239,15 @@ class Session:
         return mailbox
 
     def desk(self, key: str, depth: int) -> RequestQueue:
-        """Declare that this session answers requests, and polls them.
+        """Declare that this session answers the requests under a key expression.
 
-        The newest `depth` are kept.
+        The queue keeps the newest `depth` requests, to be polled.
         """
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
         return RequestQueue(self._session.declare_queryable(key, channel))
 
     def answer(self, key: str, take: Callable[[Request], None]) -> None:
-        """Declare that this session answers requests, and takes each one when it comes.
+        """Declare that this session answers the requests under a key expression, as they come.
 
         Args:
             key: key expression.
@@ -278,14 +278,14 @@ class Session:
         return self.question(key, payload, timeout_s).wait()
 
     def question(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Question:
-        """Send a request, and return it; the caller can poll or wait for the answer."""
+        """Send a request, and return an object with which to poll or wait for the answer."""
         replies = self._session.get(
             key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
         return Question(key, replies)
 
     def routers(self) -> tuple[str, ...]:
-        """Return the Zenoh ids of the sessions of courts to which this session is connected now."""
+        """Return the Zenoh ids of the courts' sessions to which this one is connected now."""
         return tuple(sorted(map(str, self._session.info.routers_zid())))
 
     def announce(self, key: str) -> None:

@@ -120,7 +120,7 @@ def _foxglove(record: Record) -> bytes:
 
 
 def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
-    """Make a file from a record.
+    """Make the bytes of an exported file from a record.
 
     Raises:
         UserError: if it can't be made, for example because messages of the record contradict each

@@ -61,7 +61,7 @@ class RobotArrays:
 
 @dataclass(frozen=True, repr=False)
 class KeyArrays:
-    """The keys of all seats that the court passed to the match, also those that it refused."""
+    """The keys that were pressed on all seats, also those that the match refused."""
 
     beat: Numbers
     """Beat in which the match took the key."""

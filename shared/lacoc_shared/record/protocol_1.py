@@ -55,7 +55,7 @@ def fault_of(event: Event) -> Phrase:
 
 
 def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event]) -> bool:
-    """Return whether a beat's events equal the recorded ones.
+    """Return whether a replay's events of a beat equal the recorded ones.
 
     In a record of protocol 1, differences between sentences do not count.
     """
@@ -65,7 +65,7 @@ def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event
 
 
 def same_result(header: Header, recorded: Result, again: Result) -> bool:
-    """Return whether a result equals the recorded one.
+    """Return whether the result of a replay equals the recorded one.
 
     In a record of protocol 1, a difference between the reasons does not count.
     """

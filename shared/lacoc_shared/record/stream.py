@@ -80,7 +80,7 @@ of the message."""
 
 
 class Stop(NamedTuple):
-    """A fault of a file, which in most cases ends the reading."""
+    """What is wrong with a file of a record; in most cases reading stops there."""
 
     why: Phrase
     """The fault, as the end of a sentence (`cut.*`)."""
@@ -97,15 +97,16 @@ class Stop(NamedTuple):
 
 
 class _AnyHeader(msgspec.Struct):
-    """The only field that the headers of all formats have in common."""
+    """The only field that the header of a record has in every format."""
 
     format: int
 
 
 def walk_messages(path: Path, take: Take) -> Stop | None:
-    """Pass every whole message of a file to `take`, up to its end or the first fault.
+    """Decode each whole message of a record's file and pass it to `take`, up to the first fault.
 
-    As `walk_bytes`; but bytes that can't be decoded as a message of their topic are a fault too.
+    It is like `walk_bytes`, but bytes that can't be decoded as a message of their topic are a
+    fault too.
     """
     try:
         values = _VALUES + path.stat().st_size * _VALUES_RATIO
@@ -124,7 +125,7 @@ def walk_messages(path: Path, take: Take) -> Stop | None:
 
 
 def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
-    """Pass the bytes of every whole message of a file to `take`, without decoding them.
+    """Pass the bytes of each whole message of a record's file to `take`, without decoding them.
 
     A packed file's messages are in chunks, each with a checksum: nothing in a damaged chunk
     is passed on. Other checksums find damage in the index of the chunks.
@@ -244,7 +245,7 @@ def _is_cut(data: bytes, at: int) -> bool:
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:
-    """Return the beat of a message.
+    """Return `beat`, the beat of a message, after a check that it is plausible.
 
     Raises:
         BadMessage: if this beat can't follow the one before.
@@ -255,7 +256,7 @@ def _next_beat(before: int, beat: int, topic: str) -> int:
 
 
 class _Found(NamedTuple):
-    """An MCAP record, perhaps in a chunk."""
+    """Where an MCAP record (a part of an MCAP file) stands in a file, perhaps inside a chunk."""
 
     at: int
     """Byte of the file at which the record begins, or the chunk that contains it."""

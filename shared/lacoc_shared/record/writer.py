@@ -112,7 +112,7 @@ class RecordWriter(Recorder):
         self.leave()
 
     def leave(self) -> None:
-        """Close the file without an end, when the disk has everything.
+        """Close the file without its end, after the disk has everything.
 
         A match without an end can continue in a new segment.
         """
@@ -174,7 +174,7 @@ class RecordWriter(Recorder):
         )
 
     def _ending(self) -> bytes:
-        """Return the bytes that follow the last message in a finished file.
+        """Return the bytes that follow the last message in the file of a match that is over.
 
         They have no index, because an index lists chunks, and a segment has none.
         """

@@ -15,7 +15,7 @@ class Phrase(msgspec.Struct, frozen=True, omit_defaults=True):
     """Values for the holes of the sentence, by name."""
 
     def with_values(self, **values: "Value") -> "Phrase":
-        """Return the phrase with further values, which an earlier caller could not give."""
+        """Return the phrase with further values, which were not known when it was made."""
         return Phrase(self.code, {**self.values, **values})
 
     def __hash__(self) -> int:

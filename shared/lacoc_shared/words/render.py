@@ -82,7 +82,7 @@ def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
 
 
 def _unknown(phrase: Phrase, depth: int) -> str:
-    """Return the text for a code that is not in the table: the code with its plain values."""
+    """Return the text of a phrase whose code is not in the table: the code and the values."""
     names = sorted(phrase.values, key=lambda name: name.encode("utf-16-be", "surrogatepass"))
     plain = (
         f"{_text(name)}: {_filled(phrase.values[name], (), 'en', DEEPEST)}"

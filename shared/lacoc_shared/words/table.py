@@ -35,7 +35,7 @@ ON_PAGES = FILES[:-3]
 
 
 class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The entry of a code in the table."""
+    """The entry of a sentence in the table: its values, and its words in both languages."""
 
     en: str
     ja: str

@@ -1,4 +1,4 @@
-"""The template language of the table, parsed: text, holes and clauses.
+"""Parses templates, the sentences in the table of words: text, holes for values, and clauses.
 
     {team}               the value as it is
     {seconds:.1}         a number with this many decimals

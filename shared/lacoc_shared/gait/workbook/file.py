@@ -1,4 +1,4 @@
-"""Reads and writes Loco-data workbooks, and tells workbooks from gait files that are text."""
+"""Reads and writes gait files that are workbooks, and tells them from gait files that are text."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -70,7 +70,7 @@ def read_workbook(
     range_deg: Range = RANGE_DEG,
     notes: list[Phrase] | None = None,
 ) -> PostureTable:
-    """Read a Loco-data workbook: the values of its sheet "EX (input)".
+    """Read the postures of a workbook: the values of its sheet "EX (input)".
 
     Args:
         data: the .xlsx file, at most 1 MiB. If "Loco-data" is the only sheet, it is read.
@@ -111,7 +111,7 @@ def sheet_rows(sheet: WorkbookSheet) -> list[Row]:
 
 
 def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
-    """Write a Loco-data workbook, ready to edit; spreadsheets keep 15 digits of a number.
+    """Write postures as a workbook, ready to edit; spreadsheets keep 15 digits of a number.
 
     Args:
         table: the postures.

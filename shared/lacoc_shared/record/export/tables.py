@@ -14,7 +14,7 @@ from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
-    """Make the Pos-data.txt of a seat (rules 2).
+    """Make the table Pos-data.txt: how the robot of a seat moved, tick by tick.
 
     If a team joins during the match with a robot that has another number of joints, all earlier
     rows are dropped.
