@@ -96,7 +96,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(self.capsule(level, points) for level in range(len(points) - 1))
 
     def capsule(self, level: int, points: Sequence[Point]) -> Capsule:
-        """Compute the shape of one link.
+        """Compute the shape of one link of the leg.
 
         Args:
             level: Root 0, 1st 1, 2nd 2.

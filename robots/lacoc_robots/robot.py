@@ -48,7 +48,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def joints(self) -> int:
-        """Number of joints.
+        """Number of the robot's joints.
 
         The id of a joint is leg + number of legs * level (Root 0, 1st 1, 2nd 2).
         """

@@ -16,7 +16,7 @@ _HUGE = sys.float_info.max
 
 
 class Entries:
-    """The entries of one table; all tables of a file share one list of mistakes."""
+    """The entries of one TOML table; all tables of a file share one list of mistakes."""
 
     def __init__(self, table: dict[str, Any], place: str, file: str, book: list[Mistake]) -> None:
         """Prepare to read the entries of a table.
@@ -37,7 +37,7 @@ class Entries:
         return name in self._table
 
     def note(self, name: str, found: Phrase | str, expected: Phrase, **where: Any) -> None:
-        """Note a mistake in an entry."""
+        """Note a mistake in an entry of the table."""
         self._book.append(
             Mistake(
                 file=self._file,
@@ -166,11 +166,11 @@ class Entries:
         ]
 
     def ask(self, name: str) -> None:
-        """Accept an entry without reading it."""
+        """Note that an entry is allowed, although its value is not read."""
         self._taken.add(name)
 
     def finish(self) -> None:
-        """Note a mistake for each entry that was neither read nor accepted."""
+        """Note a mistake for each entry that is neither read nor allowed."""
         known = say("robot.one-of", names=sorted(self._taken))
         for name in self._table:
             if name not in self._taken:

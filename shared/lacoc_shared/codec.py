@@ -25,7 +25,7 @@ class BadMessage(ValueError):
 
 
 def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
-    """Decode one message.
+    """Decode the bytes of one message, and check its type.
 
     Args:
         data: the bytes as they arrived.

@@ -70,7 +70,7 @@ class SilentSeat(_Input, frozen=True, tag="silent"):
 
 
 class HeardSeat(_Input, frozen=True, tag="heard"):
-    """A silent seat's controller was heard again."""
+    """The controller of a silent seat was heard again."""
 
     seat: int
 
@@ -86,7 +86,7 @@ class Decide(_Input, frozen=True, tag="decide"):
 
 
 class Advice(_Input, frozen=True, tag="advice"):
-    """The court measured that the match ran too badly, or that this is not so any more."""
+    """The court advises to play the match again, because it ran too badly, or no longer does so."""
 
     reasons: tuple[Phrase | str, ...]
     """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:

@@ -127,7 +127,7 @@ class KeySpace:
         return f"{self.root}/where"
 
     def office(self, what: str) -> str:
-        """Return the key expression of an office's request.
+        """Return the key expression on which the office sends a court requests of one kind.
 
         Args:
             what: assign, withdraw, tell, copy or retire; `*` means all of them.

@@ -114,7 +114,7 @@ class UserError(Exception):
 
     @property
     def phrase(self) -> Phrase:
-        """The message as a phrase."""
+        """The message of the error as one phrase."""
         if len(self.said) > 1:
             return say("plain.sentences", sentences=self.said)
         (only,) = self.said or ("",)

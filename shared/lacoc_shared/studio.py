@@ -45,7 +45,7 @@ class StudioKeys:
         return f"lacoc/{self.studio}/live/studio"
 
     def request(self, what: str) -> str:
-        """Return the key expression of a request.
+        """Return the key expression on which a studio gets requests of one kind.
 
         Args:
             what: robot, trial, coach, map, variants or cancel; `*` means all of them.
@@ -72,7 +72,7 @@ class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a description of the robot in a robot file."""
+    """Ask a studio for a description of the robot in a robot file."""
 
     protocol: int
     robot: SentFile | None = None
@@ -119,7 +119,7 @@ class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a trial of at most 60 s."""
+    """Ask a studio for a trial of at most 60 s."""
 
     protocol: int
     files: GaitFiles
@@ -130,7 +130,7 @@ class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
-    """The place of a number in a key's sequence."""
+    """The place of a number in the sequence of a key."""
 
     posture: int
     """Index of the posture in the sequence."""
@@ -285,7 +285,7 @@ class Weight(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CellChange(msgspec.Struct, frozen=True, kw_only=True):
-    """A number that the coach changed."""
+    """A number of a gait that the coach changed."""
 
     cell: CellPlace
     from_deg: float
@@ -380,7 +380,7 @@ class MapReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class VariantsReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The gaits that the coach offers for a choice."""
+    """The gaits that the coach offers, so that somebody can choose one."""
 
     key: int
     variants: tuple[OtherGait, ...]

@@ -121,7 +121,7 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 
 
 def _along(flag: Flag) -> float:
-    """Return the direction in which a flag's cloth points and its pole falls [rad].
+    """Return the direction in which a flag's cloth points, and in which its pole falls [rad].
 
     It is counter-clockwise round the field. So the field looks the same when it is turned by 180
     degrees.

@@ -146,7 +146,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield (corner, seat) for each robot that has just come into a corner and so takes it."""
+        """Yield the corner and the seat of each robot that takes a corner, as it just came in."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)
@@ -169,7 +169,7 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Find the void touches and the strikes of a tick.
+        """Find the flags that are struck in a tick, and the touches that do not count.
 
         Returns:
             The touches that are void after the tick, each as (seat, flag); and the strikes, each as

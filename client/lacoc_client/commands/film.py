@@ -173,7 +173,7 @@ def look_of(
 
 
 def _check(record: Path, out: Path, highlights: bool, moments: Path | None) -> None:
-    """Check paths and options before anything is drawn.
+    """Check the paths and options of the command before a film is drawn.
 
     Raises:
         UserError: if one of them is wrong, or they do not fit together.

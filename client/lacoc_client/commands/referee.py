@@ -200,7 +200,7 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _is_argument(field: FieldInfo) -> bool:
-    """Return whether a field must be given.
+    """Return whether a field of a decision must be given on the command line.
 
     `gives_s` must be given too: its default is only for old records.
     """

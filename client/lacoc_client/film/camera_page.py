@@ -96,7 +96,7 @@ class CameraPage:
         return base64.b64decode(self._page.evaluate(_SOUND, wanted))
 
     def _opened(self) -> tuple[int, int, str]:
-        """Wait until the page can show the record.
+        """Wait until the opened page can show the record.
 
         Return first beat, last beat, and how the page draws.
         """

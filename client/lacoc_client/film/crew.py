@@ -73,7 +73,7 @@ class Drawing:
         return _got(self._drawn)
 
     def stop(self) -> None:
-        """End the browser and its thread."""
+        """End this browser and the thread on which it draws."""
         self._stopped.set()
         self._thread.join()
 

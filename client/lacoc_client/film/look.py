@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class View(StrEnum):
-    """What the camera shows."""
+    """What the camera of a film shows."""
 
     AUTO = "auto"
     ARENA = "arena"
@@ -15,7 +15,7 @@ class View(StrEnum):
 
 
 class Quality(StrEnum):
-    """How finely the picture is drawn."""
+    """How finely the pictures of a film are drawn."""
 
     LOW = "low"
     """As a page draws it without a graphics card."""

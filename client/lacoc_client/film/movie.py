@@ -73,7 +73,7 @@ class Movie:
         """How many samples of each side are written."""
 
     def hear(self, samples: bytes) -> None:
-        """Add the sound of the next pictures.
+        """Add the sound that belongs to the next pictures.
 
         Args:
             samples: of the left and the right side in turn, each with 16 bits, little endian.
@@ -81,7 +81,7 @@ class Movie:
         self._samples += samples
 
     def add(self, picture: bytes, number: int | None = None) -> None:
-        """Add a picture.
+        """Add a picture to the film.
 
         Args:
             picture: PNG or JPEG.

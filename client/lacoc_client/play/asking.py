@@ -135,7 +135,7 @@ def fetch(
 
 
 def refusal_of(payload: bytes) -> FileRefused | UserError:
-    """Make the error that stands for a court's refusal.
+    """Make the error that is raised when a court refuses a request.
 
     Returns:
         `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted
@@ -151,7 +151,7 @@ def refusal_of(payload: bytes) -> FileRefused | UserError:
 
 
 def understand(payload: bytes, kind: type[T]) -> T:
-    """Decode a message of a court.
+    """Decode a message that a court has sent.
 
     Raises:
         UserError: if it can't be decoded, because the court has another version.

@@ -83,7 +83,7 @@ _HOLDS = {
 
 
 class SeenFrame(NamedTuple):
-    """A frame that a player has seen."""
+    """Names a frame that the player has seen: its match and its beat."""
 
     match: int
     beat: int
@@ -98,7 +98,7 @@ class RefusedKey(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The key as people press it: a digit, or x."""
+        """The refused key as people press it: a digit, or x."""
         return "x" if self.key == RESTART_KEY else str(self.key)
 
 
@@ -252,7 +252,7 @@ class Controller:
         return self._request("ready", ready)
 
     def leave(self) -> Phrase | None:
-        """Give the seat up.
+        """Give up the seat.
 
         Returns:
             A sentence from the court, if it sent one.

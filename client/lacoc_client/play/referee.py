@@ -19,7 +19,7 @@ _OUTLOOK_S = 30.0
 
 
 class RefereeClient:
-    """Sends decisions to a court.
+    """Sends a referee's decisions to a court.
 
     Args:
         session: an open client session.
@@ -33,7 +33,7 @@ class RefereeClient:
         self._token = token
 
     def enter(self) -> None:
-        """Show the court the token, without a decision.
+        """Show the court the referee's token, without a decision.
 
         Raises:
             UserError: if it is not a referee's token of the court, or no court answers.

@@ -46,7 +46,7 @@ class BeginLine(OutputLine, frozen=True, tag="begin"):
 
 
 class MatchResult(msgspec.Struct, frozen=True):
-    """The part of a match's result that is needed here."""
+    """The part of a match's result that a tournament of a class needs."""
 
     scores: tuple[int, int]
     official: str
@@ -134,12 +134,12 @@ class Simulation:
         return complaint(last_line, self._process.returncode)
 
     def end(self) -> None:
-        """Ask the command to end, as Ctrl-C does."""
+        """Ask the running `lacoc simulate` to end, as Ctrl-C does."""
         with contextlib.suppress(ProcessLookupError):
             self._process.terminate()
 
     def close(self) -> None:
-        """Kill the command."""
+        """Kill the running `lacoc simulate`."""
         self._complaining.cancel()
         with contextlib.suppress(ProcessLookupError):
             self._process.kill()

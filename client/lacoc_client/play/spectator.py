@@ -77,7 +77,7 @@ class Spectator:
         return tuple(self._view.log)
 
     def poll(self) -> Frame | None:
-        """Read the messages that arrived.
+        """Read the messages of the court that have arrived.
 
         Returns:
             The newest frame; None if no frame came since the last call, or its sheet is not here
@@ -240,7 +240,7 @@ class _Lacking:
 
     @property
     def is_asked(self) -> bool:
-        """True while a request is open."""
+        """Whether a request has been sent and not answered yet."""
         return self._question is not None
 
     def ask(self) -> None:

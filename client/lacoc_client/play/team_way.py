@@ -26,7 +26,7 @@ _OUT_S = 20.0
 
 
 def where(session: Session, court: str, token: str) -> Whereabouts:
-    """Ask a court where a team plays.
+    """Ask a court where the team with a token plays.
 
     Args:
         session: a connection to the court.

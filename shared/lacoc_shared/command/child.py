@@ -104,7 +104,7 @@ class Child:
             screen.note(_text(self._complained))
 
     def close(self) -> None:
-        """End the process."""
+        """End the process that was started."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._process.terminate()

@@ -221,7 +221,7 @@ app.callback(invoke_without_command=True, no_args_is_help=False)(_options)
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """Run the command line.
+    """Run the command `lacoc`.
 
     Args:
         args: the words after `lacoc`; None takes those of this process.

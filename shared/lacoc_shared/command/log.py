@@ -27,7 +27,7 @@ _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 
 
 class _Writer:
-    """Writes lines in order on its own thread."""
+    """Writes the lines of the log, in order, on a thread of its own."""
 
     def __init__(self) -> None:
         self._lines: queue.Queue[str | None] = queue.Queue(_WAITING_MOST)

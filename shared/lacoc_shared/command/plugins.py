@@ -89,5 +89,5 @@ def package_of_folder(folder: Path) -> ModuleType:
 
 
 def folder_of(module: ModuleType) -> Path:
-    """Return the folder of a package."""
+    """Return the folder of an imported package."""
     return Path(next(iter(module.__path__)))

@@ -23,7 +23,7 @@ def go_first() -> bool:
 
 
 def take_turns() -> None:
-    """Give this thread the usual priority again."""
+    """Give this thread the usual priority again, after `go_first`."""
     if sys.platform == "linux":
         _schedule(os.SCHED_OTHER, 0)
 

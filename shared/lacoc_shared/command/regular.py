@@ -22,7 +22,7 @@ _FLAGS = (
 
 
 class Missing(UserError):
-    """There is no file of this name."""
+    """Raised when there is no file of this name in the folder."""
 
 
 def is_regular(path: Path) -> bool:

@@ -49,7 +49,7 @@ class Scratch:
         self.close()
 
     def close(self) -> None:
-        """Delete the folder."""
+        """Delete this temporary folder and all that is in it."""
         self._remove()
 
 

@@ -51,7 +51,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     @property
     def host(self) -> str:
-        """Host name for clients.
+        """Host name at which clients reach the court.
 
         "" if the court listens at all addresses and `connect` has no host.
         """
@@ -64,7 +64,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
 
     def address(self, any_host: str = "127.0.0.1") -> str:
-        """Return the address to which a client connects.
+        """Return the address at which a client connects to the court.
 
         Args:
             any_host: the host to put into the address if the court listens at all addresses of its
@@ -114,7 +114,7 @@ def wrong_in(table: str, error: UserError) -> UserError:
 
 
 def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) -> ContestCourt:
-    """Read the table of a court.
+    """Read the table of a court in a contest file.
 
     Args:
         name: the court's name.
@@ -149,7 +149,7 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
 
 
 def read_standby(table: Any) -> Standby:
-    """Read the table of the second machine.
+    """Read the table of the second machine in a contest file.
 
     Raises:
         UserError: if an entry is wrong.

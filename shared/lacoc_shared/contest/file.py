@@ -41,7 +41,7 @@ MAIN = "main"
 
 
 class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
-    """A contest file, checked."""
+    """The content of a contest file, after all its entries were checked."""
 
     name: str = _NO_NAME
     recordings: Path = Path("recordings")

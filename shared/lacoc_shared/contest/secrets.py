@@ -93,7 +93,7 @@ class Secrets:
 
     @property
     def staff_names(self) -> tuple[str, ...]:
-        """The names of the staff who have a token."""
+        """The names of those members of the staff who have a token."""
         names = (name for name in self._read() if name.startswith(_STAFF))
         return tuple(sorted(name.removeprefix(_STAFF) for name in names))
 
@@ -102,7 +102,7 @@ class Secrets:
         self._forget({f"{_TEAM}{name}" for name in teams})
 
     def forget_staff(self, name: str) -> None:
-        """Forget the token of a member of the staff."""
+        """Forget the token of a member of the staff, so that the link is not valid any more."""
         self._forget({f"{_STAFF}{name}"})
 
     def _owner(self, kind: str, token: str) -> str | None:

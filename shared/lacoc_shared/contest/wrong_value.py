@@ -29,7 +29,7 @@ _KINDS = {
 
 
 def convert(value: Any, kind: type[T], where: str) -> T:
-    """Convert a value of a contest file.
+    """Convert a value of a contest file to its type, and check it.
 
     Args:
         value: what was read from TOML.

@@ -138,7 +138,7 @@ def quoted(cell: str) -> str:
 
 
 def angle_of(value_deg: float) -> float:
-    """Convert degrees to an angle [rad]."""
+    """Convert an angle from degrees to radians, as a file's angles are read."""
     return math.radians(value_deg) + 0.0  # turns -0.0 into 0.0
 
 

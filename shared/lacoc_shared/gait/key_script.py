@@ -79,7 +79,7 @@ class KeyScript:
 
     @property
     def empty(self) -> bool:
-        """True if no key is waiting."""
+        """Whether all keys of the script so far have been returned."""
         return not self._steps
 
 

@@ -58,7 +58,7 @@ def read_cells(
     headers: Phrase = ANY_HEADER,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read a gait; its first row shows which kind it is.
+    """Make a gait from the cells of a gait file; the first row shows of which kind.
 
     Args:
         rows: the rows in order; blank rows, and empty cells at the end of a row, are skipped.
@@ -270,7 +270,7 @@ class _TableReader:
         return int(value)
 
     def _joints(self, rows: Sequence[Row], first: int) -> int:
-        """Return how many angles a row should have.
+        """Return how many angles each row of the file should have.
 
         If a robot is given, return the robot's number of joints. But if no row has so many angles,
         and some rows fit another robot, the file is for another robot: note this as one mistake.

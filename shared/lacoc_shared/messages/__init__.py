@@ -110,14 +110,14 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
 
 
 class SentFile(msgspec.Struct, frozen=True):
-    """A file as a contestant's program sends it."""
+    """A file that a contestant's program sends: its name and its bytes."""
 
     name: str
     data: bytes
 
 
 class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request for a seat."""
+    """A request of a controller to take a seat."""
 
     protocol: int
     token: str
@@ -133,7 +133,7 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):
-    """The reply to a join that succeeded."""
+    """The reply to a controller that has taken a seat."""
 
     session: int
     secret: bytes
@@ -161,7 +161,7 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
 
 class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
-    """A key of a try-out."""
+    """A key that is pressed in a try-out."""
 
     tick: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
     """Tick of the try-out at which the key is pressed, from 0."""
@@ -213,7 +213,7 @@ class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Done(msgspec.Struct, frozen=True):
-    """The reply to a request that succeeded."""
+    """The reply to a request that the court has carried out."""
 
     said: Phrase | None = None
     """A remark for the sender (`note.*`)."""
@@ -237,7 +237,7 @@ class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A decision of a referee."""
+    """A referee's request to make a decision."""
 
     token: str
     by: str
@@ -314,7 +314,7 @@ class Outlook(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """A seat: its team, look, robot and keys."""
+    """A seat in the sheet of a match: its team, look, robot and keys."""
 
     id: str
     """Id of the seat in the arena, such as "left"."""
@@ -335,7 +335,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MarkerInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A disc, corner or flag of the board."""
+    """A disc, corner or flag of the board: its name and place."""
 
     name: str
     kind: str
@@ -398,7 +398,7 @@ class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
-    """A shape on a body."""
+    """A shape of a body of the scene."""
 
     body: int
     type: str

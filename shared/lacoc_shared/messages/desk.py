@@ -90,7 +90,7 @@ class ChangeFiles(DeskRequest, frozen=True, kw_only=True, tag="change"):
 
 
 class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
-    """Ask for the state of the team's own entry."""
+    """Ask for the state of the entry of the team that has this token."""
 
 
 # With the token of a court's referee
@@ -202,7 +202,7 @@ class Unshift(DeskRequest, frozen=True, kw_only=True, tag="unshift"):
 
 
 class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
-    """Show a line of text on all pages; "" removes it."""
+    """Show a line of text of the organiser on all pages; "" removes it."""
 
     text: Annotated[str, msgspec.Meta(max_length=200)]
 
@@ -318,7 +318,7 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a team's own entry."""
+    """The state of a team's own entry, which the team may see."""
 
     event: EventInfo
     team: str
@@ -404,7 +404,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
-    """A stage that waits for the organiser's draw."""
+    """A stage whose draw the organiser must make now."""
 
     stage: str
     title: Phrase
@@ -442,7 +442,7 @@ class DayState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ShiftState(msgspec.Struct, frozen=True, kw_only=True):
-    """A shift that can be taken back."""
+    """A shift that can be taken back: its id, and how long it postponed."""
 
     shift: str
     """Id of the shift."""

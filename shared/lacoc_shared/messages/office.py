@@ -101,7 +101,7 @@ WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
 
 
 def open_match(tokens: Mapping[str, Collection[str]], call: str = "") -> Assigned:
-    """Return an assignment of an open match.
+    """Return the assignment of an open match, in which people with tokens may sit down.
 
     Args:
         tokens: salted hashes of the tokens that open each seat, by the seat's name.
@@ -116,7 +116,7 @@ EARLIER_OFFICE = say("refused.earlier-office")
 
 
 class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The fields that all requests of an office have."""
+    """The fields that all requests of an office to a court have."""
 
     token: str
     """The office's token."""
@@ -168,7 +168,7 @@ class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class Copied(msgspec.Struct, frozen=True, kw_only=True):
-    """A part of a record: the answer to `Copy`."""
+    """The next part of a match's record: the answer to `Copy`."""
 
     file: str = ""
     """Name of the file; "": the office has everything that is recorded so far."""

@@ -13,7 +13,7 @@ from lacoc_shared.words import say
 
 
 class Pair(NamedTuple):
-    """The files of a certificate and its key (PEM)."""
+    """The two files of a certificate and its private key (PEM)."""
 
     certificate: Path
     """The certificate file, with the certificates between it and an authority."""

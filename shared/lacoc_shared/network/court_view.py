@@ -116,7 +116,7 @@ class CourtView(Generic[T]):
         self._told = told
 
     def add_event(self, event: Event, payload: bytes) -> bool:
-        """Add an event; return whether it is new."""
+        """Add an event that came; return whether it is new."""
         return self.log.add(event, self._keep(event, payload))
 
     def take_log(self, payload: bytes) -> list[Event]:

@@ -59,7 +59,7 @@ class EventLog(Generic[T]):
         return new
 
     def add(self, event: Event, kept: T) -> bool:
-        """Add an event; return False if it was known already."""
+        """Add an event that came; return False if it was known already."""
         known = self._known.get(event.number)
         if known is not None and known[0] == event:
             return False

@@ -105,7 +105,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def pair(self) -> Pair | None:
-        """Certificate and key; None: nothing is encrypted."""
+        """The files of certificate and private key; None: nothing is encrypted."""
         if self.certificate is None or self.private_key is None:
             return None
         return Pair(self.certificate, self.private_key)

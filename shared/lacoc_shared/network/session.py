@@ -31,7 +31,7 @@ own."""
 
 
 class NotConnected(UserError):
-    """There is no connection now, but there may be one later."""
+    """There is no connection to a court now, but there may be one later."""
 
 
 class NoReply(Exception):
@@ -57,7 +57,7 @@ class Publisher:
         self._publisher = publisher
 
     def put(self, payload: bytes) -> None:
-        """Send a message; never waits for a receiver."""
+        """Send a message to all subscribers; never wait for them."""
         self._publisher.put(payload)
 
 
@@ -74,7 +74,7 @@ class Ring:
 
 
 class Mail(NamedTuple):
-    """A message and its time of arrival on this machine."""
+    """A message that was received, and its time of arrival on this machine."""
 
     payload: bytes
     arrived_s: float
@@ -97,7 +97,7 @@ class Mailbox:
                 self.subscriber.undeclare()  # type: ignore[no-untyped-call]
 
     def deliver(self, sample: zenoh.Sample) -> None:
-        """Store a message; called on Zenoh's thread."""
+        """Put a message that has come into the mailbox; called on Zenoh's thread."""
         self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
         self._arrived.set()
         if self._notify is not None:
@@ -121,7 +121,7 @@ class Question:
         self._replies = replies
 
     def take(self) -> bytes | None:
-        """Return the answer, or None if it has not come yet; never blocks.
+        """Return the answer to the request, or None if it has not come yet; never block.
 
         Raises:
             NoReply: as in `Session.ask`.
@@ -134,7 +134,7 @@ class Question:
         return None if reply is None else self._read(reply)
 
     def wait(self) -> bytes:
-        """Wait for the answer; raises the same errors as `take`."""
+        """Wait for the answer to the request; raise the same errors as `take`."""
         for reply in self._replies:
             return self._read(reply)
         raise NoReply(self._key)
@@ -162,12 +162,12 @@ class Request:
         self.payload = b"" if payload is None else payload.to_bytes()
 
     def reply(self, payload: bytes) -> None:
-        """Answer the request."""
+        """Answer this request."""
         with self._query as query:
             query.reply(self.key, payload)
 
     def refuse(self, payload: bytes) -> None:
-        """Answer the request with an error."""
+        """Answer this request with an error."""
         with self._query as query:
             query.reply_err(payload)
 

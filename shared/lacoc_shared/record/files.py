@@ -12,7 +12,7 @@ _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
 
 
 def segment_path(folder: Path, match_id: str, segment: int) -> Path:
-    """Return the path of a segment."""
+    """Return the path of a segment of a match's record."""
     return folder / f"{match_id}.{segment:03d}.live.mcap"
 
 
@@ -38,7 +38,7 @@ def segment_name(path: Path) -> tuple[str, int] | None:
 
 
 def segment_paths(folder: Path, match_id: str) -> list[Path]:
-    """Return the existing segments of a match, in order."""
+    """Return the paths of those segments of a match that exist, in order."""
     found = [
         (name[1], path)
         for path in folder.glob("*.live.mcap")

@@ -19,7 +19,7 @@ _WORDS = ("words", "changes", "vanished")
 
 
 class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
-    """An `Event` of protocol 1."""
+    """An event of a match, as records of protocol 1 have it."""
 
     number: int
     match: int
@@ -32,7 +32,7 @@ class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def read_event(data: bytes, max_bytes: int) -> Event:
-    """Decode a recorded event.
+    """Decode an event from a record of protocol 1 or 2.
 
     Raises:
         BadMessage: if it is not an event of either protocol.
@@ -79,6 +79,6 @@ def _is_old(header: Header) -> bool:
 
 
 def _bare(event: Event) -> bytes:
-    """Encode an event without its sentences."""
+    """Encode an event without its sentences, to compare it with another one."""
     data = {name: value for name, value in event.data.items() if name not in _WORDS}
     return codec.encode(msgspec.structs.replace(event, said=say("plain.text", text=""), data=data))

@@ -19,7 +19,7 @@ V = TypeVar("V")
 
 
 class NoMatch(UserError):
-    """These files contain no match that can be read."""
+    """Raised when files contain no match that can be read."""
 
 
 class _Gap(Exception):
@@ -73,7 +73,7 @@ class Record:
 
     @property
     def header(self) -> Header:
-        """The first segment's header."""
+        """The header of the record's first segment."""
         return self.headers[0]
 
     @property
@@ -190,7 +190,7 @@ class Record:
                 self.cut = said
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
-        """Add one message to the record."""
+        """Add one message of a file to the record."""
         match topic:
             case "/lacoc/header":
                 self._begin_segment(path, message)

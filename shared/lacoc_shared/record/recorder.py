@@ -18,7 +18,7 @@ HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEA
 
 
 class Recorder(ABC):
-    """A file of a match's record, open for writing."""
+    """A file of a match's record that is being written."""
 
     path: Path
     """The file."""
@@ -30,11 +30,11 @@ class Recorder(ABC):
         self._write(_INPUT, beat, codec.encode(item))
 
     def event(self, event: Event) -> None:
-        """Write an event, at its own beat."""
+        """Write an event of the match, at the event's own beat."""
         self._write(_EVENT, event.beat, codec.encode(event))
 
     def frame(self, beat: int, encoded: bytes) -> None:
-        """Write a frame, encoded as it is published."""
+        """Write a frame of the match, in the bytes that were published."""
         self._write(_FRAME, beat, encoded)
 
     def touch(self, beat: int, touch: Touch) -> None:
@@ -83,7 +83,7 @@ class Recorder(ABC):
 
     @abstractmethod
     def _write(self, channel: int, beat: int, data: bytes) -> None:
-        """Write a message."""
+        """Write one message into the file, on the channel of its kind."""
 
 
 def no_record(path: Path, error: OSError) -> UserError:

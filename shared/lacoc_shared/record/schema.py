@@ -42,7 +42,7 @@ class ForkChanges(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Origin(msgspec.Struct, frozen=True, kw_only=True):
-    """The match from which a fork goes on, and the beat."""
+    """The match from which a fork goes on, and the beat at which it does so."""
 
     match_id: str
     """Id of that match; it may be a fork too."""

@@ -27,7 +27,7 @@ Value = Union[str, int, float, bool, None, Phrase, tuple[Scalar, ...]]  # noqa: 
 
 
 def say(code: str, /, **values: str | int | float | Phrase | Sequence[Scalar] | None) -> Phrase:
-    """Make a phrase.
+    """Make a phrase from a code and values.
 
     Nothing is checked here, so that a wrong value never stops a match. Instead
     tests/shared/test_words.py compares the code and the names in every call of `say` with the

@@ -49,7 +49,7 @@ def current() -> Language:
 
 
 def render(phrase: Phrase | str, language: Language | None = None) -> str:
-    """Put a phrase into words.
+    """Return the words of a phrase in a language.
 
     Args:
         phrase: the phrase; a plain text is returned unchanged.

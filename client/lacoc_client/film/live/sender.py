@@ -24,7 +24,7 @@ _LOOK_S = 0.2
 
 
 class LivePicture(NamedTuple):
-    """A picture of a stream."""
+    """A picture of a live stream."""
 
     number: int
     data: bytes
@@ -32,7 +32,7 @@ class LivePicture(NamedTuple):
 
 
 class Sender:
-    """Encodes pictures and sounds and sends them.
+    """Encodes the pictures and sounds of a live stream, and sends them.
 
     If the server is gone, tries again until it is back.
 
@@ -68,7 +68,7 @@ class Sender:
             self.left_out += 1
 
     def hear(self, at_s: float, samples: bytes) -> None:
-        """Send a sound.
+        """Add a sound to the stream.
 
         Args:
             at_s: when the sound begins, counted from picture 0 [s].

@@ -32,7 +32,7 @@ _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
 
 @dataclass(frozen=True)
 class Streamed:
-    """What a stream shows."""
+    """What a live stream shows."""
 
     pages: str
     """Address of the event's pages."""
@@ -48,7 +48,7 @@ class Streamed:
 
 @dataclass(frozen=True)
 class Report:
-    """How a stream went since the report before."""
+    """How well a live stream went since the last report."""
 
     hz: float
     """How many pictures were sent a second."""
@@ -57,7 +57,7 @@ class Report:
 
 
 class _Streaming:
-    """Draws and sends one stream."""
+    """Draws the pictures of one live stream, and sends them with its sounds."""
 
     def __init__(
         self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
@@ -73,7 +73,7 @@ class _Streaming:
         self._told = (0, 0)
 
     def run(self, stopping: Callable[[], bool], report: Callable[[Report], None]) -> None:
-        """Stream until it is told to stop.
+        """Draw and send the stream until it is told to stop.
 
         Raises:
             UserError: if there is no browser.
@@ -114,7 +114,7 @@ class _Streaming:
                 return
 
     def _picture(self, page: Page, shots: Shots) -> None:
-        """Wait for the time of the next picture and take it.
+        """Wait until the stream's next picture is due, and take it.
 
         Also send the earlier pictures that have waited `_HELD_S` for their sounds.
         """

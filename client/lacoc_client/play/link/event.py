@@ -38,7 +38,7 @@ class LinkedEvent(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FoundEvent(NamedTuple):
-    """An event that was found by a link to its pages."""
+    """An event, found by a link to its pages."""
 
     link: Link
     event: LinkedEvent

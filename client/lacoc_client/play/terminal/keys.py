@@ -45,7 +45,7 @@ class KeySource(Protocol):
 
     @property
     def ended(self) -> bool:
-        """True if no more keys will come."""
+        """Whether no more keys will come."""
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
         """Wait for keys; return their names, such as "2", "x", "up" or "space".
@@ -137,7 +137,7 @@ class _PosixKeys:
 if sys.platform == "win32":
 
     class _WindowsKeys:
-        """Keys of a Windows console."""
+        """Keys that are pressed in a Windows console."""
 
         ended = False
 

@@ -37,7 +37,7 @@ _LEVEL_NAMES = {Level.POSTURE: "a", Level.LOCOMOTION: "b"}
 
 
 class TerminalPlay:
-    """One contestant at a terminal.
+    """A contestant's play at a terminal: keys are read and the match is drawn.
 
     Args:
         controller: holds the seat.
@@ -126,7 +126,7 @@ class TerminalPlay:
         return lines
 
     def _press(self, key: str) -> None:
-        """Do what a key of the terminal stands for."""
+        """Do what a key means that the contestant has pressed."""
         self._message = ""
         try:
             if key.isdecimal() and len(key) == 1:

@@ -65,7 +65,7 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
 
 
 def score(frame: Frame) -> str:
-    """Format the score, such as "18 : 20"."""
+    """Format the points of the seats, such as "18 : 20"."""
     return " : ".join(str(seat.score) for seat in frame.seats)
 
 

@@ -15,7 +15,7 @@ _STAYS_S = 2.5
 
 
 class Aside:
-    """Chooses the court in the second picture.
+    """Chooses the court that the second picture shows.
 
     The second picture shows moments for which a cut is not worth it or not allowed. It appears at
     the moment, disappears soon after, and never shows the court on air. A change to the next moment

@@ -58,7 +58,7 @@ class CourtNow(NamedTuple):
 
     @property
     def is_closing(self) -> bool:
-        """Whether these are the last 30 s of a close match."""
+        """Whether the last 30 s of a close match are being played."""
         return (
             self.is_played and self.left_s is not None and self.left_s <= LAST_S and self.is_close
         )

@@ -34,7 +34,7 @@ match is played. gone: the court shown before has vanished.
 
 
 class OnAir(NamedTuple):
-    """The court that is on air."""
+    """The court that is on air, since when, and why."""
 
     court: str
     why: Why

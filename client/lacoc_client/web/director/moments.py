@@ -22,7 +22,7 @@ begins.
 
 
 class LiveMoment(NamedTuple):
-    """A moment that is worth seeing."""
+    """A moment of a match that is worth seeing."""
 
     at_s: float
     court: str

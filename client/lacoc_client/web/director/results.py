@@ -13,7 +13,7 @@ _SHOWN = 6
 
 
 class ShownResult(msgspec.Struct, frozen=True):
-    """The result of a match, as it is shown."""
+    """The result of a match, as pages show it."""
 
     court: str
     match: str
@@ -46,7 +46,7 @@ class Results:
     def see(
         self, now_s: float, over: Sequence[ShownResult], going: Sequence[tuple[str, str]]
     ) -> None:
-        """Note which matches are over and which are not.
+        """Note which matches are over now and which are not.
 
         Args:
             now_s: the time, by a clock that never goes back [s].

@@ -43,7 +43,7 @@ class SheetLine(msgspec.Struct, frozen=True):
 
 
 class PublishedSheet(msgspec.Struct, frozen=True):
-    """The part of a sheet that clients read."""
+    """The part of a contest's sheet that clients read."""
 
     stages: tuple[SheetStage, ...] = ()
     day: SheetDay = SheetDay()
@@ -51,12 +51,12 @@ class PublishedSheet(msgspec.Struct, frozen=True):
 
     @property
     def games(self) -> list[SheetGame]:
-        """All games of all stages, in the order of the sheet."""
+        """All games of all stages of the contest, in the order of the sheet."""
         return [game for stage in self.stages for match in stage.matches for game in match.games]
 
 
 def read(path: Path) -> PublishedSheet:
-    """Read a sheet.
+    """Read the sheet of a contest from its file.
 
     Raises:
         OSError: if the file can't be read.
@@ -66,7 +66,7 @@ def read(path: Path) -> PublishedSheet:
 
 
 class NewestSheet:
-    """Reads a sheet whenever it has changed.
+    """Reads the sheet of a contest again whenever its file has changed.
 
     Args:
         path: the sheet, which need not exist yet.

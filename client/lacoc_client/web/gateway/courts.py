@@ -122,7 +122,7 @@ class Courts:
         return token is not None and digest(token) in self._accepted
 
     def threads_for(self, token: str) -> Threads:
-        """Return the threads that show a token to a court.
+        """Return the threads on which a court is asked about a token.
 
         So somebody with an accepted token, who comes back, does not wait behind people who try
         tokens.
@@ -162,7 +162,7 @@ class Courts:
         return say("gateway.full", most=most)
 
     def watching(self) -> int:
-        """Count the pages that only watch."""
+        """Return how many pages only watch."""
         return self._others(False)
 
     def free_places(self) -> int:
@@ -198,7 +198,7 @@ class Courts:
                     page.send(self.notice.message)
 
     async def close(self) -> None:
-        """Close all connections."""
+        """Close the connections to all courts."""
         if self._programme is not None:
             self._programme.stop()
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))

@@ -19,7 +19,7 @@ _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "applicati
 
 
 class PageFile(NamedTuple):
-    """A file as it is served."""
+    """A file as a gateway serves it."""
 
     data: bytes
     packed: bytes | None
@@ -39,7 +39,7 @@ class PageFiles:
 
     @property
     def built(self) -> bool:
-        """True if the pages are built."""
+        """Whether the pages have been built."""
         return (self._folder / "index.html").is_file()
 
     def find(self, name: str) -> PageFile | None:

@@ -48,7 +48,7 @@ class ForkAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class ForkMade(msgspec.Struct, frozen=True):
-    """A fork that was played."""
+    """The answer to a page whose fork was played."""
 
     name: str
     """Name of the fork's recording at this gateway."""
@@ -75,7 +75,7 @@ class Forks:
         self._process: Process | None = None
 
     async def play(self, record: Path, asked: ForkAsk, language: Language) -> ForkMade:
-        """Play a fork.
+        """Play a fork of a recording, and record it.
 
         Args:
             record: the recording.
@@ -97,7 +97,7 @@ class Forks:
             self._waiting -= 1
 
     def close(self) -> None:
-        """End the command, if one is running."""
+        """End the command that plays a fork, if one is running."""
         if self._process is not None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()

@@ -114,7 +114,7 @@ class Guard:
 
 
 def machine_of(scope: Scope) -> str:
-    """Return the address of the machine that asks.
+    """Return the address of the machine from which a request comes.
 
     Behind a trusted proxy, it is the address that the proxy names. "" if it is not known.
     """

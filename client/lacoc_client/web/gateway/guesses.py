@@ -29,7 +29,7 @@ class Allowances:
         self._senders: OrderedDict[str, Allowance] = OrderedDict()
 
     def take(self, sender: str, now_s: float) -> bool:
-        """Count a request; return whether it may pass.
+        """Count a request of a sender; return whether the request may pass.
 
         Args:
             sender: who sent it, such as the address of a machine.

@@ -27,7 +27,7 @@ class Notice:
 
     @property
     def message(self) -> bytes:
-        """The message, as it is sent to a page."""
+        """The organiser's message, as the bytes that are sent to a page."""
         day, line = self._told
         body = {
             "text": line.text if line is not None else "",

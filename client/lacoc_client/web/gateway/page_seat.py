@@ -85,7 +85,7 @@ class PageSeat:
         )
 
     def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk | wire.SawAsk) -> None:
-        """Pass a request to the seat's controller.
+        """Pass a request of the page on to the controller of its seat.
 
         Raises:
             UserError: if the page has no seat.

@@ -47,7 +47,7 @@ class PageSocket(WebSocketsSansIOProtocol):
     """Called when all bytes that had to wait have been sent."""
 
     def connection_made(self, transport: BaseTransport) -> None:
-        """Take over a connection; see `asyncio.Protocol`."""
+        """Begin to use a new connection of a page; see `asyncio.Protocol`."""
         super().connection_made(transport)
         self.heard_s = self.loop.time()
         cast(Transport, transport).set_write_buffer_limits(high=0)
@@ -56,7 +56,7 @@ class PageSocket(WebSocketsSansIOProtocol):
             raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _UNSENT_BYTES)
 
     def handle_connect(self, event: Request) -> None:
-        """Begin the WebSocket handshake."""
+        """Answer the request with which a page opens its WebSocket."""
         super().handle_connect(event)
         if self.response.status_code == 101:
             self.scope["state"]["socket"] = self
@@ -109,7 +109,7 @@ class PageRequests(H11Protocol):
     _too_late: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Take over a connection; see `asyncio.Protocol`."""
+        """Begin to use a new connection of a browser; see `asyncio.Protocol`."""
         super().connection_made(transport)
         clients = (getattr(one, "client", None) for one in self.connections)
         machine = self.client[0] if self.client else ""

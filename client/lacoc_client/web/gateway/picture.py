@@ -12,7 +12,7 @@ from lacoc_shared.words import Phrase
 
 
 class _Score(msgspec.Struct, array_like=True):
-    """The fields of a `SeatFrame` up to its score."""
+    """The fields of a `SeatFrame` (a seat in a frame) up to its score."""
 
     flags: int
     score: int
@@ -137,7 +137,7 @@ class CourtPicture:
         return wire.message(MessageKind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Note a scene of the court.
+        """Note a scene that the court has sent.
 
         Returns:
             The bytes for pages; None if the scene is not new, or not the newest frame's scene.
@@ -145,7 +145,7 @@ class CourtPicture:
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Note a sheet of the court.
+        """Note a sheet that the court has sent.
 
         Returns:
             The bytes for pages; None if the sheet is not new, or has another protocol version.
@@ -153,7 +153,7 @@ class CourtPicture:
         return wire.message(MessageKind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Note the health of the court.
+        """Note a health message that the court has sent.
 
         Returns:
             The bytes for pages; None if the court has another version of the protocol.

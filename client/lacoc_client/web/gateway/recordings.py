@@ -29,7 +29,7 @@ _ODDS_BYTES = 1 << 20
 
 
 class ListedRecord(msgspec.Struct, frozen=True):
-    """One entry of the list of recordings."""
+    """One recording, as the list of recordings shows it."""
 
     name: str
     bytes: int
@@ -99,7 +99,7 @@ class Recordings:
         return None
 
     def close(self) -> None:
-        """Delete the gateway's copies and forks."""
+        """Delete the gateway's own recordings: copies and forks."""
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()

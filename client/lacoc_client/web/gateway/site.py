@@ -70,7 +70,7 @@ class More(Protocol):
         """Routes of these pages besides the HTML file."""
 
     async def close(self) -> None:
-        """Close whatever these pages have opened."""
+        """Close what these pages have opened, when the gateway ends."""
 
 
 def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
@@ -205,7 +205,7 @@ def event_route(home: Home) -> BaseRoute:
 
 
 def sheet_route(path: Path | None) -> BaseRoute:
-    """Return the route of a contest's newest sheet.
+    """Return the route on which a contest's newest sheet is served.
 
     Args:
         path: the sheet's file, which need not exist yet; None: there is no contest.

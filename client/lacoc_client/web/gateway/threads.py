@@ -23,5 +23,5 @@ class Threads:
         return await asyncio.get_running_loop().run_in_executor(self._pool, do)
 
     def close(self) -> None:
-        """Accept no more calls; calls that run may finish."""
+        """Take no more calls; calls that run may finish."""
         self._pool.shutdown(wait=False, cancel_futures=True)

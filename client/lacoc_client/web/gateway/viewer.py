@@ -68,13 +68,13 @@ class Viewer:
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
-        """Set the frame rate [Hz]; a rate below 1 or above 50 becomes 1 or 50."""
+        """Set the page's frame rate [Hz]; a rate below 1 or above 50 becomes 1 or 50."""
         # Comparisons with NaN are False, so it becomes the highest rate.
         self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
         self._next_s = 0.0
 
     def at_least(self, hz: float) -> None:
-        """Raise the frame rate to at least `hz`."""
+        """Raise the page's frame rate to `hz` if it is lower [Hz]."""
         self.rate(max(hz, 1 / self._interval_s))
 
     def offer(self, framed: bytes, now_s: float) -> None:

@@ -29,7 +29,7 @@ FAULT = say("gateway.fault")
 
 
 class Unreadable(UserError):
-    """A page sent something that is not a known request."""
+    """Raised when a page has sent something that is not a known request."""
 
 
 class TokenRefused(UserError):
@@ -106,7 +106,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life.
+    """Ask for a reply, to show that the page is still there.
 
     The reply says how long an answer of the court takes, if the page has a court.
     """
@@ -129,7 +129,7 @@ class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
 
 
 class WhereAsk(Ask, frozen=True, kw_only=True, tag="where"):
-    """Ask where a team plays."""
+    """Ask where the team with a token plays."""
 
     token: _Token | None = None
     """The team's token; None: the one that was given on the command line."""
@@ -142,7 +142,7 @@ class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
 
 
 class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
-    """Give up the seat."""
+    """Give up the seat that the page holds."""
 
 
 class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
@@ -164,7 +164,7 @@ class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
 
 
 class CheerAsk(Ask, frozen=True, kw_only=True, tag="cheer"):
-    """Cheer with one of the symbols."""
+    """Cheer a match with one of the symbols for cheers."""
 
     symbol: Annotated[int, msgspec.Meta(ge=0, le=3)]
 
@@ -180,7 +180,7 @@ class TryAsk(Ask, frozen=True, kw_only=True, tag="try"):
 
 
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
-    """Enter as a referee, with a name."""
+    """Enter as a referee, with a token and the referee's name."""
 
     token: _Token
     by: _Short

@@ -58,7 +58,7 @@ _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
 
 
 def read(data: bytes) -> Asked:
-    """Decode a request.
+    """Decode a request of a page /office or /enter.
 
     Raises:
         Unreadable: if it is no known request.

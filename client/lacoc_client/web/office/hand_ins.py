@@ -28,7 +28,7 @@ class HandIns:
         self._changes = Allowances(1 / _CHANGE_S, _CHANGES)
 
     def count(self, machine: str, request: bytes, now_s: float) -> None:
-        """Count a request if it hands in files.
+        """Count a request to the desk if it hands in files.
 
         Args:
             machine: address of the machine that sent it.

@@ -252,7 +252,7 @@ class Classroom:
             await self.groups.leave(student)
 
     async def lower(self, student: ClassStudent) -> None:
-        """Take down the raised hand of a student."""
+        """Take down the hand that a student has raised for help."""
         await student.diary.add(Hand(up=False))
         student.hand_moved()
         student.tell()

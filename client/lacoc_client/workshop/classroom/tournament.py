@@ -55,7 +55,7 @@ class LeftOut(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a tournament is."""
+    """How far a tournament is: its matches and standings so far."""
 
     state: Literal["none", "running", "done", "stopped"] = "none"
     arena: str = ""
@@ -231,7 +231,7 @@ class _TournamentPlayer(msgspec.Struct, frozen=True):
 
 
 def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _TournamentPlayer]:
-    """Write the files of each player into a folder.
+    """Write the robot and gait files of each player into a folder.
 
     Returns:
         The players, by the word that names each player on the command line.

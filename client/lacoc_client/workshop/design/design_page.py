@@ -223,7 +223,7 @@ class DesignPage:
         return (await self._checked_files(asked, learner))._asdict()
 
     async def _checked_files(self, asked: requests.PlayAsk, learner: Learner) -> SeatFiles:
-        """Check a table, and make its files.
+        """Check a table, and make robot and gait files of it.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -237,7 +237,7 @@ class DesignPage:
         return Draft(table=asked.table, sequences=asked.sequences, robot=robot).files()
 
     async def _learn(self, asked: requests.Asked, learner: Learner) -> Any:
-        """Answer a request about the phases."""
+        """Answer a request about the phases, such as an answer to a question."""
         student, diary = learner.student, learner.student.diary
         value: Any = {}
         match asked:

@@ -36,7 +36,7 @@ _LONGEST_NAME = 100
 
 
 class FolderFile(msgspec.Struct, frozen=True):
-    """A file of the folder."""
+    """A gait or robot file in the folder, with its version."""
 
     name: str
     slot: Slot
@@ -105,7 +105,7 @@ class Folder:
             return tuple(sorted(changed))
 
     def read(self, name: str) -> Read:
-        """Read a file.
+        """Read a gait or robot file of the folder.
 
         Raises:
             FileRefused: with every mistake of a gait file.
@@ -173,7 +173,7 @@ class Folder:
             return None
 
     def _data(self, path: Path) -> bytes | None:
-        """Read a file; return None if it does not exist."""
+        """Read the bytes of a file; return None if it does not exist."""
         try:
             with path.open("rb") as file:
                 return file.read(MAX_BYTES + 1)

@@ -25,7 +25,7 @@ class Host(Protocol):
     """Takes tables to a court, to practise there; None: pages can't do this."""
 
     async def enter(self, hello: requests.Hello, where: str) -> "LetIn":
-        """Let a page in.
+        """Let a page in, if it shows the right key, code or token.
 
         Args:
             hello: the page key, token, or class code and name that the page shows.

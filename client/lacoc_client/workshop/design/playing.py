@@ -38,7 +38,7 @@ class Playing:
             return self._url
 
     def close(self) -> None:
-        """End the command, and delete the files."""
+        """End the running `lacoc practice`, and delete the files that it was given."""
         with self._lock:
             if self._child is not None:
                 self._child.close()

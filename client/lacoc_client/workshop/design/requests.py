@@ -49,7 +49,7 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
 
 
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
-    """Read a file of the folder."""
+    """Read a gait or robot file of the folder."""
 
     name: Name
 
@@ -67,7 +67,7 @@ class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
 
 
 class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
-    """Save a table, or the text of a robot file."""
+    """Save a table, or the text of a robot file, into the folder."""
 
     name: Name
     table: FileTable | None = None
@@ -79,7 +79,7 @@ class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
 
 
 class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
-    """Make a file to download."""
+    """Make a gait or robot file for the user to download."""
 
     name: Name
     table: FileTable
@@ -103,14 +103,14 @@ class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
 
 
 class Foretold(msgspec.Struct, frozen=True, kw_only=True):
-    """A guess of the student about the next trial."""
+    """What the student guesses about the next trial."""
 
     about: Literal["pace", "way"]
     said: Pace | Way
 
 
 class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
-    """Let the robot walk."""
+    """Let the robot walk with a table, in a trial."""
 
     table: FileTable | None = None
     """None: the sample gait of the robot."""
@@ -124,7 +124,7 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
 
 
 class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
-    """Change the table that several pages share."""
+    """Report a change of the table that several pages share."""
 
     table: Name
     """Id of the table; "": the student's own table."""
@@ -185,7 +185,7 @@ class HandOnAsk(PlayAsk, frozen=True, kw_only=True, tag="hand_on"):
 
 
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
-    """Go to a phase, forward or back."""
+    """Go to another phase, forward or back."""
 
     number: _PhaseNumber
 
@@ -327,7 +327,7 @@ _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
 
 
 def read(data: bytes) -> Asked:
-    """Decode a request of a page.
+    """Decode a request of a /design page.
 
     Raises:
         Unreadable: if the bytes are not a known request, or too long for their kind of request.

@@ -45,7 +45,7 @@ _TABLES = (
 
 
 class Kept(NamedTuple):
-    """A piece of evidence in the file."""
+    """A piece of evidence as it is in the class file."""
 
     number: int
     """Number of this evidence among all of the class, in the order of writing, from 1."""
@@ -142,7 +142,7 @@ class ClassFile:
         return list(_readable(rows))
 
     def documents(self) -> list[Document]:
-        """Read the newest documents of everybody."""
+        """Read the newest content of all documents of the class."""
         rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
         return [Document(*row) for row in rows]
 
@@ -154,7 +154,7 @@ class ClassFile:
         self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")  # the log still has it otherwise
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the class file."""
         self._db.close()
 
     def problem(self, error: sqlite3.Error) -> Damaged | UserError:

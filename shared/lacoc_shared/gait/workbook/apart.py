@@ -85,7 +85,7 @@ class _ReaderProcess:
             return found
 
     def close(self) -> None:
-        """End the process."""
+        """End the process that reads workbooks."""
         with self._lock:
             self._end()
 

@@ -69,7 +69,7 @@ class WorkbookSheet(msgspec.Struct, frozen=True):
 
 
 def read_sheet(data: bytes, name: str) -> WorkbookSheet:
-    """Read the sheet that has the gait.
+    """Read the sheet of a workbook that has the gait.
 
     Args:
         data: the .xlsx file.
@@ -250,7 +250,7 @@ def _sheet(data: bytes, name: str) -> WorkbookSheet:
 
 
 def _title(titles: list[str], name: str) -> str:
-    """Return the title of the sheet to read.
+    """Return the title of the sheet that has the gait.
 
     Spaces, full-width letters and capitals make no difference.
     """

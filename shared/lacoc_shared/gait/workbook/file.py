@@ -106,7 +106,7 @@ def read_workbook(
 
 
 def sheet_rows(sheet: WorkbookSheet) -> list[Row]:
-    """Return the rows of a workbook's sheet."""
+    """Return the rows of a workbook's sheet, as `reader` takes them."""
     return [Row(number, row) for number, row in enumerate(sheet.rows, start=1)]
 
 

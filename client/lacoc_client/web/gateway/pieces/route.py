@@ -28,7 +28,7 @@ places many pages would come and be refused."""
 
 
 class PiecesNow(msgspec.Struct, frozen=True):
-    """Which pieces of a picture can be fetched now."""
+    """Which pieces of a match pages can fetch now."""
 
     run: str
     """Name of the run. A new run begins when the gateway starts, or when somebody asks again after

@@ -45,7 +45,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
     """The last table that the teacher handed out to this group."""
 
     def joined(self, member: str) -> "GroupState":
-        """Return the group with one more member.
+        """Return the group after a student has joined it.
 
         Raises:
             UserError: if the group is full.
@@ -57,7 +57,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.structs.replace(self, members=(*self.members, member))
 
     def left(self, member: str) -> "GroupState":
-        """Return the group without a member; the words that the member proposed stay."""
+        """Return the group after a member has left it; the words that the member proposed stay."""
         return msgspec.structs.replace(
             self,
             members=tuple(one for one in self.members if one != member),
@@ -97,7 +97,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
         return max(counts)[2] if counts and max(counts)[0] else ""
 
     def count(self, word: str) -> int:
-        """Return how many votes a word has."""
+        """Return how many members have voted for a word."""
         return sum(vote == word for vote in self.votes.values())
 
 

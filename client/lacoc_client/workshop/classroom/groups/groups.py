@@ -83,7 +83,7 @@ class Groups:
         return next(found, None)
 
     def find(self, name: str) -> GroupState:
-        """Return a group by name.
+        """Return the group with this name.
 
         Raises:
             UserError: if there is no group of this name.
@@ -158,7 +158,7 @@ class Groups:
         await student.diary.add(Named(word=word))
 
     async def hand_out(self, name: str, handed: Handed) -> None:
-        """Offer a table to the members of a group.
+        """Offer a gait's table to the members of a group.
 
         Raises:
             UserError: if there is no group of this name.

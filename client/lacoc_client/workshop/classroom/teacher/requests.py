@@ -31,7 +31,7 @@ class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
 
 
 class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
-    """Put a student into a group."""
+    """Put a student into a group, or let the student work alone."""
 
     student: Name
     group: Name
@@ -39,7 +39,7 @@ class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
 
 
 class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
-    """Take down the raised hand of a student."""
+    """Take down the hand that a student has raised for help."""
 
     student: Name
 
@@ -81,7 +81,7 @@ class TournamentAsk(Ask, frozen=True, kw_only=True, tag="play"):
 
 
 class StopPlayAsk(Ask, frozen=True, kw_only=True, tag="stop_play"):
-    """End the tournament early."""
+    """End the running tournament early."""
 
 
 Asked = (

@@ -90,12 +90,12 @@ class Diary:
         """The student's documents, as earlier runs of the program wrote them."""
 
     async def read(self) -> None:
-        """Read the evidence and documents of earlier runs, if there is a file."""
+        """Read the evidence and documents that earlier runs of the program kept, if any."""
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
     def begin(self, evidence: Iterable[Evidence], documents: Iterable[Document]) -> None:
-        """Take over what the class file has of this student.
+        """Take over the evidence and documents that the class file has of this student.
 
         Args:
             evidence: the student's evidence, in order.

@@ -39,7 +39,7 @@ class Keeper:
         return self._store
 
     async def close(self) -> None:
-        """Close the file."""
+        """Close the file of evidence and tables."""
         if self._opening is not None and not self._opening.done():
             await asyncio.wait({self._opening})
         if self._store is not None:

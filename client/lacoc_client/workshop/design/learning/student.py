@@ -40,7 +40,7 @@ class Student:
 
     @property
     def rules(self) -> StudentRules:
-        """What the teacher allows."""
+        """What the teacher allows this student."""
         return self._rules()
 
     @property
@@ -89,7 +89,7 @@ class Student:
         self.table.add(viewer, self.name)
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page that has gone."""
+        """Remove a page of the student that was closed."""
         self.viewers.pop(viewer, None)
         self.lessons.pop(viewer, None)
         self.table.leave(viewer)

@@ -75,7 +75,7 @@ class Content(NamedTuple):
 
 
 class SheetXml:
-    """A worksheet's XML.
+    """The XML of a worksheet, in which cells can be changed.
 
     Args:
         data: the file; an earlier check has made sure that it defines no XML entities.
@@ -100,11 +100,11 @@ class SheetXml:
             raise NotEditable("it has no cells")
 
     def cells(self) -> list[XmlCell]:
-        """Return the cells in the order of the file."""
+        """Return the cells of the worksheet, in the order of the file."""
         return [cell for line in self._lines.values() for cell in line.cells]
 
     def raw(self, start: int, end: int) -> str:
-        """Return a part of the XML as it is."""
+        """Return a part of the worksheet's XML as it is."""
         return self._data[start:end].decode()
 
     def number(self, text: str) -> Content:

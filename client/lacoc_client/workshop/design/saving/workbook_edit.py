@@ -77,7 +77,7 @@ def formulas_in(data: bytes, name: str) -> int:
 
 
 class _Edit:
-    """One change of a workbook.
+    """One change of a workbook: new postures in its table.
 
     Args:
         book: the workbook.

@@ -62,11 +62,11 @@ class Asker:
         """Number of requests that wait for their answer."""
 
     def start(self) -> None:
-        """Start to look for a studio."""
+        """Start the thread that looks for a studio."""
         self._thread.start()
 
     def close(self) -> None:
-        """Close the connection."""
+        """Close the connection to the studio."""
         self._ending.set()
         self._thread.join()
 
@@ -128,7 +128,7 @@ class Asker:
             await asyncio.sleep(_LAST_POLL_S)
 
     async def _answered(self, what: str, request: bytes, timeout_s: float) -> bytes:
-        """Send a request and wait for its answer.
+        """Send a request to the studio, and wait for its answer.
 
         A studio that has just started can't receive requests for a moment after it is found. So a
         request that nobody received is sent again.
@@ -172,7 +172,7 @@ class Asker:
 
 
 async def _wait(question: Question) -> bytes:
-    """Wait for an answer; raise the same errors as `Question.take`."""
+    """Wait for the answer to a request; raise the same errors as `Question.take`."""
     pause_s = _FIRST_POLL_S
     while (payload := question.take()) is None:
         await asyncio.sleep(pause_s)
@@ -195,7 +195,7 @@ class Listening:
         self._mailbox = session.mailbox(key, 1, self._arrived)
 
     def close(self) -> None:
-        """End the subscription."""
+        """End the subscription to the reports."""
         if self._mailbox is not None:
             self._mailbox.close()
 
