@@ -116,7 +116,7 @@ def ghost_file(name: str) -> tuple[Path, str]:
 
 
 def ghost_join(record: Record, seat: int) -> JoinSeat:
-    """Return the last join of a ghost's seat: team, robot and gait files.
+    """Return how a ghost's seat was taken last: team, robot and gait files.
 
     Raises:
         UserError: if nobody joined this seat.
@@ -161,7 +161,7 @@ def _from_file(name: str) -> BotFactory:
 
 
 def _from_source(name: str, source: bytes) -> BotFactory:
-    """Run the source of a bot; tracebacks name its file `name`.
+    """Run the Python source of a bot; tracebacks name its file `name`.
 
     Raises:
         UserError: if it fails, or has no function `bot`.

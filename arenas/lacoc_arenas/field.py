@@ -97,7 +97,7 @@ def shape(
     colour: Rgba,
     **more: Any,
 ) -> None:
-    """Add a geom that is only visible: without mass and contacts."""
+    """Add a geom that can only be seen: it has no mass and no contacts."""
     spec.worldbody.add_geom(
         name=name,
         type=kind,

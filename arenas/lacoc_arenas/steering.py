@@ -114,7 +114,7 @@ class Pilot:
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """Return the key to press now to come nearer to a point, or [x].
+        """Return the key to press now so that the robot comes nearer to a point, or [x].
 
         None keeps the present key.
 
@@ -157,7 +157,7 @@ class Pilot:
         return restart
 
     def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
-        """Choose another heading for a while if a long walk makes no progress."""
+        """Walk in another direction for a while if the robot walks for long without progress."""
         pose = poses[self._seat]
         if pose.distance_m(*self._mark_m) > _STUCK_M:
             self._mark_m, self._walked_ticks = (pose.x_m, pose.y_m), 0

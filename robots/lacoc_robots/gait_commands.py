@@ -203,7 +203,7 @@ def convert(
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file, and tell its name and that of an older file, which is kept."""
+    """Write a file, and tell the user its name and that of an older file, which is kept."""
     kept = save(path, data)
     if kept is not None:
         screen.note(say("command.kept", path=str(path), kept=str(kept)))

@@ -58,7 +58,7 @@ def gather(
 
 
 def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
-    """Turn workbooks into text, which is what a court reads.
+    """Turn gait files that are workbooks into text, which is what a court reads.
 
     Each file keeps its name, so that mistakes name the contestant's own file.
 
@@ -87,7 +87,7 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 def to_send(
     files: SeatFiles, sequences: Sequence[Sequence[int]] | None, notes: list[Phrase]
 ) -> tuple[SeatFiles, FileRefused | None]:
-    """Turn files as a team has them into files that a court reads.
+    """Turn the files that a team has into files that a court reads.
 
     A workbook with mistakes is sent without its content, so that the court can report the mistakes
     of the other files too. The court also says whether it needs the files at all: in a match that

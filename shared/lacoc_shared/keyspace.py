@@ -99,7 +99,7 @@ class KeySpace:
         return f"{self.root}/seat/{seat}/key"
 
     def request(self, seat: str, what: str) -> str:
-        """Return the key expression of a request with a reply.
+        """Return the key expression on which a seat sends the court requests of one kind.
 
         Args:
             seat: the seat.

@@ -52,7 +52,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def place(self) -> str:
-        """The place in words: "row 3, column 7, joint 5 (L,F)"."""
+        """The place of the mistake in words: "row 3, column 7, joint 5 (L,F)"."""
         return render(say("plain.sentences", sentences=self._places()))
 
     def _places(self) -> list[Phrase | str]:

@@ -28,7 +28,7 @@ class Phase(IntEnum):
 
     @property
     def word(self) -> str:
-        """Last part of the code of the phase's name (`phase.*`), such as "halted"."""
+        """Last part of the code with which the phase's name is looked up, such as "halted"."""
         return self.name.lower()
 
 

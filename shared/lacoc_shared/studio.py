@@ -194,7 +194,7 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask which numbers of a key matter most, and for better numbers."""
+    """Ask the coach which numbers of a key matter most, and for better numbers."""
 
     protocol: int
     job: str
@@ -230,7 +230,7 @@ class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for six gaits that look different, made from one table or from two."""
+    """Ask the coach for six gaits that look different, made from one table or from two."""
 
     protocol: int
     job: str
@@ -249,7 +249,7 @@ class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early. The reply to this request is `Done`.
+    """End a search of the coach early. The reply to this request is `Done`.
 
     The request that began the search is then answered with the best result so far; if the search
     still waits, it is refused.
@@ -260,7 +260,7 @@ class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class Progress(msgspec.Struct, frozen=True, kw_only=True):
-    """The progress of a search; a studio sends it several times a second."""
+    """The progress of a search of the coach; a studio sends it several times a second."""
 
     stage: str
     """What the studio is doing: waiting (until earlier searches end), repair, matters, search,
@@ -329,7 +329,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GaitDifference(msgspec.Struct, frozen=True, kw_only=True):
-    """A visible difference between a gait and the gait of the request."""
+    """A visible difference of a gait that was found from the gait of the request."""
 
     way: str
     """What differs: height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""

@@ -23,7 +23,7 @@ _THIN_M = 0.002
 
 
 def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
-    """Add floor, walls, start pads, corners, flags and probes."""
+    """Add floor, walls, start pads, corners and flags with their probes (poles) to a model."""
     field.ground(spec, game.size_m)
     settings = game.settings
     for number, (left, right) in enumerate(zip(*game.starts, strict=True)):
@@ -49,7 +49,7 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
 
 
 def _cloth_m(flag: Flag, height_m: float) -> tuple[float, float]:
-    """Return half length and half height of the cloth [m].
+    """Return half the length and half the height of a flag's cloth [m].
 
     The cloth is larger for a flag with more points, so that one sees the points without the colour.
     """

@@ -199,7 +199,7 @@ class FlagStrike:
         return state.board
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return each seat's points: corners held and flags struck (workshop 5-2 rule 7)."""
+        """Return each seat's points, for the corners that it holds and the flags that it struck."""
         left = right = 0
         for owner, points in zip(state.board, self._points, strict=True):
             if owner == LEFT:

@@ -43,7 +43,7 @@ def bot(sheet, seat):
 
 
 class Layer(NamedTuple):
-    """One layer: its output is `weights @ input + biases`."""
+    """One layer of a policy: its output is `weights @ input + biases`."""
 
     weights: npt.NDArray[np.float64]
     """Shape (outputs, inputs)."""

@@ -51,7 +51,7 @@ class _Walker(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def blocked(self, cell: int, poses: list[Pose]) -> bool:
-        """Say whether another robot is near the disc of a cell."""
+        """Say whether another robot is near the disc of this cell."""
         return any(
             other.distance_m(*self.discs[cell]) < _BLOCKED_M
             for seat, other in enumerate(poses)

@@ -122,7 +122,7 @@ def _sit(
     patience: Patience,
     stopping: Callable[[], bool],
 ) -> None:
-    """Join an open seat and play there, match after match."""
+    """Let the bot join an open seat and play there, match after match."""
     notes: list[Phrase] = []
     files, own_team = bring(notes)
     for note in notes:
@@ -157,7 +157,7 @@ def _play_match(
     arena: str | None,
     stopping: Callable[[], bool],
 ) -> bool:
-    """Play one match of a team; return whether it is over.
+    """Let the bot play one match of a team; return whether the match is over.
 
     False: the seat was refused, the court is gone, or the bot is asked to stop.
     """
@@ -217,7 +217,7 @@ def _play(
 
 
 def _look(controller: Controller, player: BotPlayer) -> None:
-    """Show the bot the newest frame; print refused keys, phases and the result."""
+    """Pass the newest frame to the bot; print refused keys, new phases and the result."""
     frame = controller.wait_frame(0.1)
     if frame is not None:
         player.see(frame)

@@ -33,7 +33,7 @@ class _ClassGroup(TyperGroup):
     usual = "open"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Insert `open` before the words if the first is no subcommand.
+        """Insert the word `open` before the command line's words if the first is no subcommand.
 
         See `click.Group.parse_args`.
         """

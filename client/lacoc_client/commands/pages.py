@@ -38,7 +38,7 @@ def public_address(
     proxy: Sequence[str] | None,
     own: PublicAddress | None = None,
 ) -> PublicAddress:
-    """Return how others reach the pages, from the options of a command.
+    """Return the address at which others reach the pages, from the options of a command.
 
     Args:
         pages: `options.Pages`.

@@ -150,7 +150,7 @@ def follow(
     *,
     ready: bool,
 ) -> None:
-    """Play at the terminal, at each court to which the token's team is called.
+    """Play at the terminal, at each court to which the team with the token is called.
 
     Args:
         access: how to reach any court of the event, and the token.

@@ -148,7 +148,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
 
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
-    """Make the function that runs a decision's subcommand.
+    """Make the function that the subcommand of a decision runs.
 
     Its parameters are the decision's fields.
     """
@@ -398,7 +398,7 @@ def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
 
 
 def _ask(name: str, question: Phrase) -> None:
-    """Ask the user at the terminal whether a decision shall be made.
+    """Ask the user at the terminal whether to make a decision.
 
     Raises:
         UserError: if there is no terminal to ask at.
@@ -417,7 +417,7 @@ def _decide_when_legal(
     name: str,
     decide: Callable[[], DecisionReply],
 ) -> DecisionReply:
-    """Decide as soon as the court says that the decision is legal.
+    """Make a decision as soon as the court says that it is legal.
 
     The court's health is up to half a second old, so a decision may be refused although health
     calls it legal. If the next health message still calls it legal, the refusal is raised.

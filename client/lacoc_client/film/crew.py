@@ -24,7 +24,7 @@ _LOOK_S = 0.2
 
 
 class Drawing:
-    """A browser that draws its part of the pictures, on a thread of its own.
+    """A browser that draws its part of a film's pictures, on a thread of its own.
 
     Args:
         address: the page's address.
@@ -123,7 +123,7 @@ class Crew:
         return ends
 
     def begin(self, pictures: Sequence[Picture], fps: int) -> bytes:
-        """Begin to draw, and return the sound of all pictures; may be called once.
+        """Begin to draw a film's pictures, and return the sound of all; may be called once.
 
         Raises:
             UserError: if it can't be made.
@@ -133,7 +133,7 @@ class Crew:
         return self._drawings[0].sound()
 
     def pictures(self, count: int) -> Iterator[bytes]:
-        """Yield the pictures as PNG, in order; may be called once, after `begin`.
+        """Yield the pictures of the film as PNG, in order; may be called once, after `begin`.
 
         Raises:
             UserError: if one can't be drawn.

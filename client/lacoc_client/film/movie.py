@@ -104,13 +104,13 @@ class Movie:
         self._sound_on()
 
     def end(self) -> None:
-        """Write the pictures and sounds that are still in the encoders."""
+        """Write the pictures and sounds of the film that are still in the encoders."""
         self._container.mux(self._stream.encode(None))
         if self._track is not None:
             self._container.mux(self._track.encode(None))
 
     def _sound_on(self) -> None:
-        """Write the sound up to the end of the newest picture.
+        """Write the film's sound up to the end of the newest picture.
 
         Where sound is missing, write silence.
         """

@@ -33,7 +33,7 @@ class FilmSite:
     """The parts of the record, by the names under which they are served."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the page that shows the record with a look."""
+        """Return the address of the page that shows the record, in the look of the film."""
         query = [
             *(("file", name) for name in self.files),
             ("q", "high" if look.quality is Quality.HIGH else "low"),

@@ -14,7 +14,7 @@ _ASK_AGAIN_S = 1.0
 
 
 class BotPlayer:
-    """Says ready and presses a bot's keys, match after match.
+    """Plays for a bot: says ready and presses the keys that the bot returns, match after match.
 
     Args:
         controller: holds the seat.

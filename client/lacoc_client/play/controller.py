@@ -308,7 +308,7 @@ class Controller:
             self._send(self._seen)
 
     def press(self, level: int, key: int, upon: SeenFrame | None = None) -> int:
-        """Send a new command, which is repeated until the next one.
+        """Send a new command of the seat; `poll` repeats it until the next one.
 
         Args:
             level: a `Level`.

@@ -58,7 +58,7 @@ class RefereeClient:
         return ask(self._session, self._keys, key, request, DecisionReply)
 
     def look_ahead(self, decision: Decision | None, seconds: float) -> Outlook:
-        """Ask what would happen if play went on; the match stays as it is.
+        """Ask the court what would happen if play went on; the match stays as it is.
 
         Args:
             decision: a decision that would be made before play goes on; None: no decision.

@@ -103,7 +103,7 @@ class Simulation:
         )
 
     async def lines(self) -> AsyncIterator[OutputLine]:
-        """Yield the lines that the command prints, until the command ends.
+        """Yield the lines that `lacoc simulate` prints, until the command ends.
 
         The end of the command counts, not the end of its output: after a kill, the command's
         worker processes keep the output open until their matches have ended.

@@ -121,7 +121,7 @@ class Spectator:
         return frame
 
     def wait(self, timeout_s: float) -> None:
-        """Sleep until a frame is there, for at most `timeout_s`."""
+        """Sleep until a frame has arrived, for at most `timeout_s`."""
         self._frames.wait(timeout_s)
 
     def take_events(self) -> list[Event]:
@@ -244,7 +244,7 @@ class _Lacking:
         return self._question is not None
 
     def ask(self) -> None:
-        """Send the request, unless one waits for its answer already."""
+        """Send the request to the court, unless one waits for its answer already."""
         if self._question is None:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
@@ -253,7 +253,7 @@ class _Lacking:
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer if it has arrived since the last call; else None."""
+        """Return the court's answer if it has arrived since the last call; else None."""
         if self._question is None:
             return None
         try:

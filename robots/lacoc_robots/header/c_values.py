@@ -66,7 +66,7 @@ class _CanNotRead(Exception):
 
 
 def read_c(text: str) -> CValues:
-    """Read what a C file defines and declares outside of functions."""
+    """Read the values that a C file defines and declares outside of functions."""
     macros: dict[str, list[_Token]] = {}
     code: list[str] = []
     for number, line in enumerate(_lines(_COMMENT.sub(_blank, text)), 1):
@@ -193,7 +193,7 @@ class _Declarations:
         return self._tokens[self._at].text if self._at < len(self._tokens) else ""
 
     def _skip_value(self) -> None:
-        """Skip a value: go to the comma or semicolon behind it."""
+        """Skip the value of a declaration: go to the comma or semicolon behind it."""
         depth = 0
         while self._at < len(self._tokens):
             text = self._tokens[self._at].text

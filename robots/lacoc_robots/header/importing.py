@@ -146,7 +146,7 @@ class _HeaderRobot:
         return DEFAULTS[name]
 
     def _list(self, name: str, count: int) -> tuple[float, ...] | None:
-        """Return the numbers of a list; as in C, numbers that are left out are 0.
+        """Return the numbers of a list in the C files; as in C, those left out are 0.
 
         Returns:
             None if there is no list of this name, or it can't be used.

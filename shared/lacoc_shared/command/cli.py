@@ -95,13 +95,13 @@ class LazyGroup(TyperGroup):
         return list(self.commands)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Print the help; imports only commands of other packages."""
+        """Print the help of the group; import only commands of other packages."""
         self.epilog = listing.advice(self.listing)
         with self.commands.only_list():
             super().format_help(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
-        """List the completions of a word; imports only commands of other packages."""
+        """List the completions of a word for the shell; import only commands of other packages."""
         with self.commands.only_list():
             return super().shell_complete(ctx, incomplete)
 

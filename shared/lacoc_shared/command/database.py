@@ -17,7 +17,7 @@ _NO_ROOM = (
 
 
 class Damaged(Exception):
-    """The file is damaged: SQLite can't read it as a database."""
+    """Raised when SQLite can't read a file as a database."""
 
 
 def connect(

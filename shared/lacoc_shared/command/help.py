@@ -37,14 +37,14 @@ _english: dict[str, Any] = {}
 
 @cache
 def japanese() -> Mapping[str, str]:
-    """Read the table of help: a mapping from each English text to its Japanese."""
+    """Read the table of the help: a mapping from each English text to its Japanese."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
     table = tomllib.loads(file.read_text(encoding="utf-8"))
     return {pair["en"]: pair["ja"] for pair in table["text"] + table["typer"]}
 
 
 def in_words(text: str) -> str:
-    """Return a text of the help in the language of this process."""
+    """Return a text of the help of commands in the language of this process."""
     return text if words.current() == "en" else japanese().get(text, text)
 
 

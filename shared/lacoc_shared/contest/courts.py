@@ -104,7 +104,7 @@ class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     @property
     def listen(self) -> str:
-        """Address at which the office lets the second machine copy."""
+        """Address at which the office lets the second machine copy its files."""
         return _any_host(self.office)
 
 

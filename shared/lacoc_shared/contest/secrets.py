@@ -137,7 +137,7 @@ class Secrets:
         return tokens[name]
 
     def _read(self) -> dict[str, str]:
-        """Return all tokens by name, as they are in the file now."""
+        """Return all tokens by name, as they are in the file of the contest's tokens now."""
         with self._lock:
             try:
                 now = _state(self._path)

@@ -45,7 +45,7 @@ class BadToml(ValueError):
 
     @property
     def phrase(self) -> Phrase:
-        """What is wrong, in which line, and what should be there, as one phrase.
+        """What is wrong in the TOML text, in which line, and what should be there, as a phrase.
 
         The text of a line with a token is left out, because the reader of the message may not see
         the token.

@@ -65,7 +65,7 @@ def convert(value: Any, kind: type[T], where: str) -> T:
 
 
 def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[str, Phrase | str]:
-    """Return which entry is wrong, and what is expected there.
+    """Return which entry of a table is wrong, and what is expected there.
 
     Args:
         error: raised by `msgspec.convert` for a table read from TOML.

@@ -43,7 +43,7 @@ _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a file: its number, counted from 1, and its cells."""
+    """One row of a gait file: its number, counted from 1, and its cells."""
 
     number: int
     cells: list[str]

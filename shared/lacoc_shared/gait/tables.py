@@ -54,7 +54,7 @@ class LocomotionTable(msgspec.Struct, frozen=True):
 
 
 class Gait(msgspec.Struct, frozen=True):
-    """Everything that the keys of a seat can do: one table or both."""
+    """The gait of a robot: what the keys of its seat do, as one table or both."""
 
     postures: PostureTable | None = None
     locomotion: LocomotionTable | None = None

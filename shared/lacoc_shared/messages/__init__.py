@@ -197,7 +197,7 @@ class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
-    """How a robot walks alone on the field of its match, as pictures."""
+    """How a robot walked alone in a try-out, on the field of its match, as pictures."""
 
     scene: bytes
     """Hash of the scene with the field and only this robot, 8 bytes."""
@@ -220,7 +220,7 @@ class Done(msgspec.Struct, frozen=True):
 
 
 class Refusal(msgspec.Struct, frozen=True):
-    """The reply to a request that was refused; sent as an error."""
+    """The court's reply to a request that it refused; sent as an error."""
 
     why: Phrase
     """Why the request was refused, as a whole sentence; its code says which kind of refusal it
@@ -248,7 +248,7 @@ class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
 
 
 class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The effect of a decision; sent when the decision is on disk."""
+    """The court's reply to a decision: its effect. It is sent when the decision is on disk."""
 
     beat: int
     event: int | None = None

@@ -70,7 +70,7 @@ class LookAtEvent(DeskRequest, frozen=True, kw_only=True, tag="look"):
 
 
 class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
-    """Apply to take part with a team; the organiser decides."""
+    """Apply to take part in the contest with a team; the organiser decides."""
 
     team: _Name
     files: TeamFiles
@@ -208,7 +208,7 @@ class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
 
 
 class Publish(DeskRequest, frozen=True, kw_only=True, tag="publish"):
-    """Publish the contest: write its folder, which the gateway serves."""
+    """Publish the contest: write the folder with its results, which the gateway serves."""
 
 
 class Staff(DeskRequest, frozen=True, kw_only=True, tag="staff"):
@@ -318,7 +318,7 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a team's own entry, which the team may see."""
+    """The state of a team's own entry, as the answer to the team."""
 
     event: EventInfo
     team: str
@@ -431,7 +431,7 @@ class Undrawable(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class DayState(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether the office gives games to courts now; if not, until when and why."""
+    """Whether the office gives games to courts now; if not, until when and why not."""
 
     paused: bool
     """Whether no game is called until the organiser says so."""

@@ -92,7 +92,7 @@ class Assigned(msgspec.Struct, frozen=True, kw_only=True):
         return any(not seat.team for seat in self.seats)
 
     def seat(self, seat: str) -> AssignedSeat | None:
-        """Return a seat by its id; None if nobody may sit there."""
+        """Return a seat of the assigned match by its id; None if nobody may sit there."""
         return next((one for one in self.seats if one.id == seat), None)
 
 
@@ -232,7 +232,7 @@ class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class Where(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request to a court: where does the team with this token play?"""
+    """A question to a court: where does the team with this token play?"""
 
     token: str
     """The token of a team or of an open seat."""

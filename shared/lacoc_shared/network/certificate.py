@@ -21,7 +21,7 @@ class Pair(NamedTuple):
 
 
 class Certificate:
-    """A certificate and its key as a TLS context, which can read renewed files.
+    """A certificate and its key, as a TLS context that can read renewed files.
 
     Args:
         pair: the files of certificate and key.
@@ -37,7 +37,7 @@ class Certificate:
         self._load(self.context)
 
     def renew(self) -> bool:
-        """Read the files again if they have changed; return whether they were read.
+        """Read certificate and key again if they have changed; return whether they were read.
 
         Open connections go on; new connections get the new certificate.
 

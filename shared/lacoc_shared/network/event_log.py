@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 class EventLog(Generic[T]):
-    """Keeps one object for each event: the event itself, or its bytes.
+    """Keeps the events of a match, each as one object: the event itself, or its bytes.
 
     An event that a restarted court sends again is not new. If an event differs from the known event
     with its number, earlier events stay valid and later ones are dropped.

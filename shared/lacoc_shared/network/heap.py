@@ -27,7 +27,7 @@ def share() -> None:
 
 
 def give_back() -> None:
-    """Return free memory to the system; takes a few milliseconds."""
+    """Return memory that glibc has freed to the system; this takes a few milliseconds."""
     _call("malloc_trim", 0)
 
 

@@ -52,7 +52,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         proxies: Iterable[str] = (),
         authority: Path | None = None,
     ) -> Self:
-        """Make a public address from its attributes, after checking them.
+        """Make a public address from its parts, after checking them.
 
         Raises:
             UserError: if something is wrong; the message names all mistakes.

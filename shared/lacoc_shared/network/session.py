@@ -35,7 +35,7 @@ class NotConnected(UserError):
 
 
 class NoReply(Exception):
-    """Nobody answered a request: no such court, a request that is not allowed, or too late."""
+    """Nobody answered a request: there is no receiver, it is not allowed, or the time was up."""
 
 
 class TooLate(NoReply):
@@ -91,7 +91,7 @@ class Mailbox:
         self.subscriber: zenoh.Subscriber[None] | None = None
 
     def close(self) -> None:
-        """End the subscription; messages that came before can still be taken."""
+        """End the subscription; messages that have come before can still be taken."""
         if self.subscriber is not None:
             with suppress(zenoh.ZError):  # its session may be closed already
                 self.subscriber.undeclare()  # type: ignore[no-untyped-call]
@@ -108,7 +108,7 @@ class Mailbox:
         return self._mails.popleft() if self._mails else None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until there is a message; return False if none came in time."""
+        """Wait until there is a message in the mailbox; return False if none came in time."""
         self._arrived.clear()
         return bool(self._mails) or self._arrived.wait(timeout_s)
 
@@ -206,7 +206,7 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Close the connection and everything that was declared on it.
+        """Close the connection, and with it all subscriptions and answers of this session.
 
         This takes ten seconds if the cable of another machine was pulled a moment ago.
         """
@@ -263,7 +263,7 @@ class Session:
         self._session.declare_queryable(key, Callback(deliver, indirect=False))
 
     def send(self, key: str, payload: bytes) -> None:
-        """Send one message under a key expression; never waits for a receiver."""
+        """Send one message under a key expression; never wait for a receiver."""
         self._session.put(key, payload)
 
     def ask(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> bytes:

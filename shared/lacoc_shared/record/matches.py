@@ -52,7 +52,7 @@ class MatchName:
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
-        """Read a match id; None if it is not one that a court makes."""
+        """Read a match id into its parts; None if it is not one that a court makes."""
         found = _ID.fullmatch(match_id)
         return found and cls(found["opened"], int(found["number"]), found["court"])
 

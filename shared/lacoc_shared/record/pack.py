@@ -81,7 +81,7 @@ def write_packed(messages: Sequence[Message], out: Path) -> None:
 
 
 def read_messages(paths: Sequence[Path]) -> list[Message]:
-    """Read all messages of the files of a record, up to the first damage."""
+    """Read all messages of a record from its files, up to the first damage."""
     return _messages(paths)[0]
 
 

@@ -67,7 +67,7 @@ def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event
 def same_result(header: Header, recorded: Result, again: Result) -> bool:
     """Return whether the result of a replay equals the recorded one.
 
-    In a record of protocol 1, a difference between the reasons does not count.
+    In a record of protocol 1, the two may give different reasons why the match ended.
     """
     if _is_old(header):
         again = msgspec.structs.replace(again, reason=recorded.reason)

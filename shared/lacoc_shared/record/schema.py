@@ -36,7 +36,7 @@ class ForkChanges(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def is_none(self) -> bool:
-        """True if nothing was changed: no bot, script, take-back or restart."""
+        """Whether nothing was changed: no bot, script, take-back or restart."""
         players = any(one.bot or one.script for one in self.seats)
         return not players and self.take_back is None and not self.restart
 

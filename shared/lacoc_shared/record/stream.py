@@ -92,7 +92,7 @@ class Stop(NamedTuple):
 
     @property
     def loses_nothing(self) -> bool:
-        """True if the fault loses no message, because all of them were read."""
+        """Whether the fault loses no message, because all of them were read."""
         return self.at_end and not self.damaged
 
 
@@ -229,7 +229,7 @@ def _is_index_damaged(data: bytes, at: int) -> bool:
 
 
 def _is_packed(data: bytes) -> bool:
-    """Return whether a file's messages are in chunks, as in a packed file."""
+    """Return whether a file is the one packed file of a record: its messages are in chunks."""
     at = len(MCAP0_MAGIC)
     while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
         at += _RECORD_HEAD.size + int.from_bytes(data[at + 1 : at + 9], "little")

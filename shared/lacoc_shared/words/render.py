@@ -171,5 +171,5 @@ def _number(value: float, formats: tuple[str, ...]) -> str:
 
 
 def _fixed(value: float, digits: int) -> str:
-    """Round half up, from the exact value, as JavaScript's `toFixed` does."""
+    """Round a number half up, from its exact value, as JavaScript's `toFixed` does."""
     return str(Decimal(value).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP, _EXACT))

@@ -119,7 +119,7 @@ def _install(needed: Requirement) -> Phrase:
 
 
 def _package(needed: Requirement) -> Finding | None:
-    """Check the version of a package; None if it is not installed."""
+    """Check the version of a package that LACOC needs; None if the package is not installed."""
     try:
         found = version(needed.name)
     except PackageNotFoundError:

@@ -110,7 +110,7 @@ def _reached(public: PublicAddress, title: str, health: GatewayHealth) -> Iterat
 
 
 def _certificate(public: PublicAddress) -> Finding:
-    """Check until when the certificate of the pages is valid.
+    """Check until when the certificate of an event's pages is valid.
 
     Raises:
         OSError: if there is no connection, or the certificate is not proven.
@@ -152,7 +152,7 @@ def _websocket(public: PublicAddress) -> Finding:
 
 
 def _get(public: PublicAddress, path: str) -> _PageAnswer:
-    """Request a path of the pages and return status and body.
+    """Request a path from an event's pages; return the HTTP status and the body.
 
     Raises:
         OSError: if nobody answers.

@@ -4,7 +4,7 @@ import numpy as np
 
 
 class Mixer:
-    """A stereo track that is taken piece by piece from its beginning.
+    """A stereo sound track that is taken piece by piece, from its beginning.
 
     Where nothing sounds it is silent.
     """

@@ -98,7 +98,7 @@ class Sender:
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Drop all pictures that arrive in the next `seconds`."""
+        """Drop all pictures that are put into the queue in the next `seconds`."""
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
             self.left_out += self._next() is not None

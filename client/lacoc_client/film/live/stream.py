@@ -40,7 +40,7 @@ class Streamed:
     """Name of the court that is shown; "": what the director chooses."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the broadcast's page, with the language of a look."""
+        """Return the address of the broadcast's page, in the language of `look`."""
         watched = {"court": self.court} if self.court else {"director": "1"}
         query = {"q": "low", "lang": look.language, "taken": "1", **watched}
         return f"{self.pages.rstrip('/')}/overlay?{urlencode(query)}"

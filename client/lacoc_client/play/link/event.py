@@ -45,7 +45,7 @@ class FoundEvent(NamedTuple):
 
     @property
     def courts(self) -> dict[str, tuple[str, ...]]:
-        """The courts that a command can reach, with their addresses.
+        """The courts of the event that a command can reach, with their addresses.
 
         Raises:
             UserError: if a command can reach none of them.

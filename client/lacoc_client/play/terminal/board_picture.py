@@ -220,7 +220,7 @@ def _style(front: _Rgb, back: _Rgb, bold: bool = False) -> Style:
 
 
 def _joined(segments: list[Segment]) -> Iterator[Segment]:
-    """Merge neighbours of the same style into one segment."""
+    """Merge neighbouring pieces of text that have the same style into one."""
     text, style = "", None
     for segment in segments:
         if segment.style is not style and text:

@@ -112,7 +112,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
 
 
 def _latest(events: Sequence[Event], sheet: Sheet, rows: int, width: int) -> list[Text]:
-    """Return the latest events that fit completely, the newest last."""
+    """Return the newest events that fit beside the board completely, the newest last."""
     shown: list[Text] = []
     for event in reversed(events):
         clock, text = event_columns(event, sheet)

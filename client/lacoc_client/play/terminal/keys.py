@@ -41,14 +41,14 @@ _WINDOWS_LOOK_S = 0.005
 
 
 class KeySource(Protocol):
-    """A source of keys: a terminal, or a script in a pipe."""
+    """Something from which keys come: a terminal, or a script in a pipe."""
 
     @property
     def ended(self) -> bool:
         """Whether no more keys will come."""
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """Wait for keys; return their names, such as "2", "x", "up" or "space".
+        """Wait for keys of the player; return their names, such as "2", "x", "up" or "space".
 
         Args:
             timeout_s: longest wait [s].

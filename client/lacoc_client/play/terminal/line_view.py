@@ -24,7 +24,7 @@ PHASE_STYLES = {
 
 
 class LineView:
-    """Draws one line, in place: phase, clock, teams, score and the newest event."""
+    """Draws the match as one line, always in the same place: phase, clock, teams, score, event."""
 
     events_above = True
 

@@ -283,7 +283,7 @@ class TerminalPlay:
 
 
 def keys_table(controller: Controller) -> Table:
-    """Return a table of the keys of this seat, and of their effects."""
+    """Return a table of the keys that this seat may press, and of their effects."""
     sheet = controller.view.sheet
     seat = sheet.seats[controller.index]
     table = Table(show_header=False, box=None, padding=(0, 2))

@@ -22,12 +22,12 @@ def clock(ticks: int) -> str:
 
 
 def match_clock(frame: Frame, sheet: Sheet) -> str:
-    """Format the time left, or the time played if the match has no time limit."""
+    """Format the match's time left, or the time played if it has no time limit."""
     return clock(_shown_ticks(frame.clock_ticks, sheet))
 
 
 def event_clock(event: Event, sheet: Sheet) -> str:
-    """Format the time that the clock showed at an event, with tenths."""
+    """Format the time that the match's clock showed at an event, with tenths."""
     return log_clock(_shown_ticks(event.clock_ticks, sheet))
 
 

@@ -34,7 +34,7 @@ class CourtNow(NamedTuple):
 
     @property
     def ahead(self) -> int:
-        """Points by which the first seat leads; negative: the second seat leads."""
+        """How many points the first seat is ahead; negative: the second seat leads."""
         return self.scores[0] - self.scores[1] if len(self.scores) > 1 else 0
 
     @property

@@ -71,7 +71,7 @@ class Director:
         """The court on air, its match, and since when nothing has been played there [s]."""
 
     def look(self, now_s: float, courts: Sequence[CourtNow]) -> OnAir | None:
-        """Take a look at all courts, and choose the court on air.
+        """Note how all matches stand now, and choose the court on air.
 
         Args:
             now_s: the time, by a clock that never goes back [s].

@@ -28,7 +28,7 @@ _MOST = 8
 
 
 def cuts_left(cuts: Sequence[float], at_s: float) -> int:
-    """Return how many cuts are left in the minute that ends at a time.
+    """Return how many more cuts are allowed in the minute that ends at a time.
 
     Args:
         cuts: the times of earlier cuts [s].
@@ -64,7 +64,7 @@ class Prices:
         return worth(moment.points) if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
-        """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
+        """Return what a cut costs while `left` cuts of the minute are left, 1 to `CUTS_MOST`."""
         return self._costs[left - 1]
 
     def least(self, share: float) -> float:

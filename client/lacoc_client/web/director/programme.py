@@ -90,7 +90,7 @@ class Programme:
         self._running: asyncio.Task[None] | None = None
 
     def add(self, viewer: Viewer, aside: bool) -> None:
-        """Let a page follow the first picture, or (`aside`) the second one."""
+        """Let a page follow the director's first picture, or (`aside`) the second one."""
         if self._running is None:
             self._begin()
         (self._second if aside else self._first).add(viewer)

@@ -67,7 +67,7 @@ class Results:
             self._later.append((now_s + self._behind_s, after))
 
     def shown(self, now_s: float) -> tuple[ShownResult, ...]:
-        """Return the results that are shown at a time, the newest first."""
+        """Return the results that pages show at a time, the newest first."""
         while self._later and self._later[0][0] <= now_s:
             self._shown = self._later.popleft()[1]
         return self._shown[-_SHOWN:][::-1]

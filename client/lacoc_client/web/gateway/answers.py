@@ -18,7 +18,7 @@ _LOGGED_HZ, _LOGGED_BURST = 1.0, 10
 
 
 class Answers:
-    """Sends replies and refusals; used from the event loop only.
+    """Sends a page the replies and refusals; used from the event loop only.
 
     Args:
         viewer: the page.
@@ -43,7 +43,7 @@ class Answers:
             self._log(f"Refused: {error}", "refused")
 
     def later(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
-        """Answer with the result of a coroutine when it is done.
+        """Send a page the result of a coroutine as the reply, when the coroutine is done.
 
         The page's next requests do not wait for it.
 
@@ -79,7 +79,7 @@ class Answers:
         return answer
 
     def stop(self) -> None:
-        """Cancel the open requests, because the page has gone."""
+        """Cancel the page's requests that are not answered yet, because the page has gone."""
         for task in self._tasks:
             task.cancel()
 

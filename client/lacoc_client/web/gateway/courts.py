@@ -87,7 +87,7 @@ class Courts:
         return self._programme
 
     def _all(self) -> list[CourtFeed]:
-        """Return the started feeds of all courts of this gateway."""
+        """Return the feeds of all courts of this gateway, and start those that are not started."""
         return [self.find(name)[0] for name in list(self.home.courts)]
 
     @property
@@ -140,7 +140,7 @@ class Courts:
         return self.owns(secret) or self.has_accepted(secret)
 
     def why_full(self, viewer: Viewer, claims: bool = False) -> Phrase | None:
-        """Say why there is no room for a page; None if there is room.
+        """Return why there is no room for a page; None if there is room.
 
         Pages whose token a court has accepted have a limit of their own. So no crowd of spectators
         can take their places. A page whose token no court has accepted yet may come even if all
@@ -166,7 +166,7 @@ class Courts:
         return self._others(False)
 
     def free_places(self) -> int:
-        """Count the places that are free for pages that only watch."""
+        """Return how many more pages that only watch may come."""
         return max(0, self.home.viewers_most - self.watching())
 
     def _others(self, can_act: bool, but: Viewer | None = None) -> int:

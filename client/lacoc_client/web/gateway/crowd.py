@@ -23,7 +23,7 @@ _SAYS_AGAIN = 5
 
 
 class Crowd:
-    """Counts the people who watch; used from the event loop only.
+    """Counts the people who watch, and their cheers; used from the event loop only.
 
     Args:
         courts: the courts of the gateway.
@@ -44,7 +44,7 @@ class Crowd:
             self._cheers.setdefault(audience, Counter())[symbol] += round(count)
 
     def hear(self, audience: Audience, cheers: list[int]) -> None:
-        """Count the report of a page that fetches the match in pieces.
+        """Count the report of a page that watches the match in pieces.
 
         The report also stands for pages that were not asked to report.
 

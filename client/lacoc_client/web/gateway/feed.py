@@ -91,7 +91,7 @@ class CourtFeed:
 
     @property
     def connected(self) -> bool:
-        """True while the court sends frames that pages can show."""
+        """Whether the court sends frames that pages can show."""
         return self._connected
 
     async def joined(self) -> Session:

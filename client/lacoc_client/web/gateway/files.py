@@ -65,7 +65,7 @@ def _read(path: Path) -> PageFile:
 
 
 def page_file(data: bytes, kind: str) -> PageFile:
-    """Make a served file from its bytes and its media type."""
+    """Make the file that a gateway serves, from its bytes and its media type."""
     packed = None
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)

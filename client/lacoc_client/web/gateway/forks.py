@@ -62,7 +62,7 @@ _printed = msgspec.json.Decoder(_Printed)
 
 
 class Forks:
-    """Plays forks, one at a time; used from the event loop only.
+    """Plays the forks that pages ask for, one at a time; used from the event loop only.
 
     Args:
         folder: folder for the records of the forks.

@@ -49,7 +49,7 @@ class Guesses:
         self._machines = Allowances(_GUESSES_HZ, _GUESSES_BURST)
 
     def wait_s(self, machine: str, now_s: float) -> float:
-        """Count a wrong code, and return how long its answer must wait [s].
+        """Count a wrong code that a machine sent; return how long its answer must wait [s].
 
         Args:
             machine: address of the machine that sent the code.

@@ -18,7 +18,7 @@ class Notice:
         self._told: tuple[SheetDay, SheetLine | None] = (SheetDay(), None)
 
     def look(self) -> bool:
-        """Read the sheet if it is new; return whether the message has changed."""
+        """Read the contest's sheet if it is new; return whether the message in it has changed."""
         sheet = None if self._sheet is None else self._sheet.take()
         if sheet is None:
             return False

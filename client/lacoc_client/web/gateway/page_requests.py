@@ -23,7 +23,7 @@ long."""
 
 
 class Numbered(Protocol):
-    """A request with a number; the reply has the same number."""
+    """A request of a page; its reply has the same number."""
 
     @property
     def id(self) -> int:

@@ -21,7 +21,7 @@ from lacoc_shared.words import render, say
 
 
 class PageSeat:
-    """Joins a seat for a page, steers it and tells the page its state.
+    """Joins a seat for a page, steers its robot, and tells the page the seat's state.
 
     Used from the event loop only.
 

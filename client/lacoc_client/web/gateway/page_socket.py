@@ -67,7 +67,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         super().data_received(data)
 
     def resume_writing(self) -> None:
-        """Continue after everything was sent; see `asyncio.Protocol`."""
+        """Continue after all bytes for the page were sent; see `asyncio.Protocol`."""
         super().resume_writing()
         if self.drained is not None:
             self.drained()

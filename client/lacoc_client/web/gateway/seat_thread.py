@@ -146,7 +146,7 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Tell the page the state of the seat, if it has changed."""
+        """Tell the page the state of its seat, if the state has changed."""
         told: dict[str, Any] = {
             "seat": controller.seat,
             "index": controller.index,

@@ -69,7 +69,7 @@ class Port:
 
     @property
     def url(self) -> str:
-        """Address at which everybody opens the pages, without a slash at its end."""
+        """Address at which everybody opens the gateway's pages, without a slash at its end."""
         if self.public.pages:
             return self.public.pages
         host, port = self.socket.getsockname()[:2]

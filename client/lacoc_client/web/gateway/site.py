@@ -67,7 +67,7 @@ class More(Protocol):
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """Routes of these pages besides the HTML file."""
+        """The HTTP routes that these further pages need besides their HTML file."""
 
     async def close(self) -> None:
         """Close what these pages have opened, when the gateway ends."""

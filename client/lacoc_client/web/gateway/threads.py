@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Threads:
-    """A few threads for calls; further calls wait while all threads are busy.
+    """A few threads on which calls run; more calls wait while all threads are busy.
 
     Args:
         count: number of threads.

@@ -37,7 +37,7 @@ class Socket(Protocol):
         """Send a message, as a finished WebSocket frame."""
 
     def watch_closely(self) -> None:
-        """Check several times a second whether the page is still there."""
+        """Check several times a second whether the page still answers."""
 
 
 class Viewer:
@@ -101,7 +101,7 @@ class Viewer:
             self._socket.write(framed)
 
     def watch_closely(self) -> None:
-        """Check several times a second whether the page is still there."""
+        """Check several times a second whether the page still answers."""
         self._socket.watch_closely()
 
     def unheard_s(self) -> float:

@@ -187,7 +187,7 @@ class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
 
 
 class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):
-    """Act as referee from now on, in place of another page."""
+    """Act for the referee from now on, in place of another page of the court's referees."""
 
 
 class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):

@@ -25,7 +25,7 @@ _COMING_BACK_S, _AGAIN_S = 1.0, 0.05
 
 
 class DeskLine:
-    """The connection to the desk; it is opened with the first request.
+    """The connection to the office's desk; it is opened with the first request.
 
     Args:
         address: address of the desk.

@@ -32,7 +32,7 @@ class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of a member of the staff to the organiser's page."""
+    """The link with which a member of the staff opens the organiser's page."""
 
     name: str
     link: str
@@ -86,7 +86,7 @@ class LinkMaker:
         return SeatLink(court=court, seat=seat, link=link, qr=qr_code(link))
 
     def staff(self, name: str, token: str) -> StaffLink:
-        """Make the link of a member of the staff with the token."""
+        """Make the link with which a member of the staff opens the organiser's page."""
         link = self._link("office", token)
         return StaffLink(name=name, link=link, qr=qr_code(link))
 

@@ -62,7 +62,7 @@ class ClassStudent(Student):
         return not (self.viewers or self.lessons or did or self.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
-        """Note that the student did something; `trial` is the studio's reply if it was a trial."""
+        """Note that the student did something. After a trial, `trial` is the studio's reply."""
         self.seen_s = time.time()
         if trial is not None:
             self._trial = trial

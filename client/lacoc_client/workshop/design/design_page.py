@@ -197,7 +197,7 @@ class DesignPage:
         return {}
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
-        """Check a table, and give its files to a court, to practise there.
+        """Check a table, and give its files to a court, where the student can play with them.
 
         Returns:
             `url`: the address of the page at that court.
@@ -263,7 +263,7 @@ class DesignPage:
         return value
 
     def _with_files(self, asked: requests.Asked) -> Any:
-        """Answer a request about files; runs on another thread."""
+        """Answer a page's request about gait and robot files; runs on another thread."""
         match asked:
             case requests.ReadAsk():
                 return self._folder().read(asked.name)

@@ -44,7 +44,7 @@ class FolderFile(msgspec.Struct, frozen=True):
 
 
 class Read(msgspec.Struct, frozen=True, kw_only=True):
-    """The content of a file: a table, or the text of a robot file."""
+    """What was read from a file: a table, or the text of a robot file."""
 
     table: FileTable | None = None
     robot: str | None = None

@@ -239,7 +239,7 @@ class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
 
 
 class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
-    """Ask the coach which numbers matter, and for better numbers."""
+    """Ask the coach which numbers of a key matter, and for better numbers."""
 
     job: _Job
     """Name that the page chooses for the search; reports on the search and `cancel` use it too."""

@@ -89,7 +89,7 @@ class ClassFile:
     def add(
         self, student: str, evidence: Evidence, at_s: float, documents: Iterable[Document] = ()
     ) -> int:
-        """Write evidence, and documents with it; return the number of the evidence.
+        """Write evidence to the class file, and documents with it; return the evidence's number.
 
         Raises:
             sqlite3.Error: if the file can't be written; `problem` says why.
@@ -123,7 +123,7 @@ class ClassFile:
         return dict(rows.fetchall())
 
     def write_documents(self, documents: Iterable[Document]) -> None:
-        """Write the newest content of documents; raises the same error as `add`."""
+        """Write the newest content of documents; raise the same error as `add`."""
         with self._db:
             self._write_documents(documents)
 

@@ -167,7 +167,7 @@ class All:
         self.parts = parts
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each rule; the share is the mean of the rules' shares."""
+        """Look at each of the rules; the share that is done is the mean of their shares."""
         return every([part.look(evidence) for part in self.parts])
 
 

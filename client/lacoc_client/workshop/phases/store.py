@@ -69,7 +69,7 @@ class ClassStore:
 
     @property
     def trouble(self) -> Phrase | None:
-        """A sentence that says what is wrong with the file; None: nothing is wrong.
+        """A sentence that says what is wrong with the class file; None: nothing is wrong.
 
         It names a full disk until a write succeeds, and a damaged file until the store is closed.
         """

@@ -101,7 +101,7 @@ class SharedTable:
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
-        """Return everything that a page needs to show and edit the table."""
+        """Return everything that a page needs to show and edit this table."""
         return {
             "table": self.name,
             "epoch": self._epoch,
@@ -118,7 +118,7 @@ class SharedTable:
         self._tell_people()
 
     def show(self, viewer: Viewer, name: str) -> None:
-        """Add a page that had another table open, and send it this one."""
+        """Add a page that had another table open, and send it this table."""
         viewer.send(self._message({"state": self._document.state}))
         self.add(viewer, name)
 
@@ -214,7 +214,7 @@ class SharedTable:
         """For each cell the number of the last update in which it was typed, and the page."""
 
     def _is_of(self, writer: int, viewer: Viewer) -> bool:
-        """Return whether a page may write under a page number (Yjs's client id).
+        """Return whether a page may send edits under a page number (Yjs's client id).
 
         If two pages wrote under the same number, the document would take the second page's edits
         for edits that it has already.

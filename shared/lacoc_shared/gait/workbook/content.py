@@ -149,7 +149,7 @@ def _transitional(content: dict[str, bytes]) -> bytes:
 
 
 class _TooMuchError(Exception):
-    """A part of the workbook is too large or forbidden; `found` says which."""
+    """Raised when a part of a workbook is too large or forbidden; `found` says which."""
 
     def __init__(self, found: Phrase) -> None:
         super().__init__()

@@ -140,7 +140,7 @@ def _cell_name(title: str, row: int, column: int) -> str:
 
 
 def _at_cell(mistake: Mistake, title: str, odd: Mapping[tuple[int, int], Odd]) -> Mistake:
-    """Add to a mistake the name of its cell, and what is odd about the cell."""
+    """Add to a mistake the name of the workbook's cell, and what is odd about the cell."""
     if mistake.row is None or mistake.column is None:
         return msgspec.structs.replace(mistake, field=title)
     found = mistake.found

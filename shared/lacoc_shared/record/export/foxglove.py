@@ -123,7 +123,7 @@ def _log(event: Event, time: Timestamp) -> Log:
 
 
 class _ScenePicture:
-    """Draws a scene with the colours of a sheet, as messages for Foxglove."""
+    """Draws the scene of a match in the colours of its teams, as messages for Foxglove."""
 
     def __init__(self, scene: Scene, sheet: Sheet) -> None:
         self._scene = scene

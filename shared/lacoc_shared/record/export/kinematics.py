@@ -135,7 +135,7 @@ def euler_zyx(quat: Array) -> Array:
 
 
 def _turn(axis: Sequence[float], angle_rad: Array) -> Array:
-    """Return the quaternions (..., 4) of turns about an axis of unit length."""
+    """Return the quaternions (..., 4) that turn by these angles about an axis of unit length."""
     half = np.asarray(angle_rad)[..., None] / 2
     return np.concatenate([np.cos(half), np.sin(half) * np.array(axis)], axis=-1)
 

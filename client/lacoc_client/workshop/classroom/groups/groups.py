@@ -125,7 +125,7 @@ class Groups:
             await self._tell()
 
     async def leave(self, student: ClassStudent) -> None:
-        """Take a student out of the group, back to the student's own table.
+        """Take a student out of the student's group, back to the student's own table.
 
         A group without members ends.
         """

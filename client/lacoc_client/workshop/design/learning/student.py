@@ -67,7 +67,7 @@ class Student:
             table.show(viewer, self.name)
 
     def tell(self) -> None:
-        """Tell all the student's pages how far the student is."""
+        """Tell all the student's pages how far the student is in the phases."""
         self.send(self.phases_message())
 
     def send(self, message: bytes) -> None:
@@ -76,7 +76,7 @@ class Student:
             viewer.send(message)
 
     def greet(self, viewer: Viewer, lesson: bool) -> None:
-        """Add a page that was let in, and send it what it shows first.
+        """Add a page of the student that was let in, and send it what it shows first.
 
         Args:
             viewer: the page.
@@ -89,7 +89,7 @@ class Student:
         self.table.add(viewer, self.name)
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page of the student that was closed."""
+        """Remove a page of this student, because the page was closed."""
         self.viewers.pop(viewer, None)
         self.lessons.pop(viewer, None)
         self.table.leave(viewer)

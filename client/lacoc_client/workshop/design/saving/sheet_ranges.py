@@ -14,7 +14,7 @@ _SIZE = re.compile(r'(<(?:\w+:)?dimension\b[^>]*\sref=")([^"]*)"')
 
 
 def with_ranges(xml: bytes, layout: Layout) -> bytes:
-    """Return a sheet's XML with ranges that fit the changed table.
+    """Return a worksheet's XML in which ranges of cells fit the changed table.
 
     Input checks and colour rules of the table are extended to its new last row. Merged headings in
     the legend move down with it.

@@ -148,7 +148,7 @@ class Asker:
                 raise refusal_of(refused.payload) from None
 
     def _look(self) -> None:
-        """Connect, and keep looking for studios, until `close`."""
+        """Connect to the network, and keep looking for studios, until `close`."""
         with ExitStack() as stack:
             while not self._ending.is_set():
                 began_s = time.monotonic()

@@ -33,7 +33,7 @@ def is_apart(one_deg: float, other_deg: float) -> bool:
 
 @dataclass(frozen=True)
 class OwnTrial:
-    """A trial, and how many numbers of its rows are typed, made and foreign."""
+    """A trial, and how many numbers in the rows that it used are typed, made and foreign."""
 
     tried: Tried
     typed: int
@@ -46,7 +46,7 @@ class OwnTrial:
 
 
 def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
-    """Find for each trial where the numbers of its rows came from.
+    """Find for each trial where the numbers in the rows that it used came from.
 
     Args:
         evidence: all evidence of a student, in order.
@@ -98,7 +98,7 @@ class _Cells:
                     self._base.setdefault(place, before)
 
     def judge(self, tried: Tried) -> OwnTrial:
-        """Count how many numbers of a trial are typed, made and foreign."""
+        """Count how many numbers in the rows of a trial are typed, made and foreign."""
         counts = {"typed": 0, "made": 0, "foreign": 0}
         for number in tried.numbers:
             place = (number.key, number.posture, number.leg, number.level)

@@ -65,7 +65,7 @@ class WorkshopPhase:
         return Outcome(_ASKED_SHARE, (say("phases.answer"),)), question
 
     def may_change(self, known: PhaseQuestion | None, new: Sequence[Evidence]) -> bool:
-        """Return whether new evidence may change what `look` returns.
+        """Return whether new evidence may change how far the student is in this phase.
 
         Args:
             known: the question that `look` has returned; None: none.
