@@ -48,7 +48,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def range_deg(self) -> tuple[float, float]:
-        """The range in degrees, rounded to the numbers of the file: 60, not 59.99999999999999."""
+        """The range of the leg's joints in degrees, rounded as in the file: 60, not 59.9999999."""
         low, high = self.range_rad
         return round(math.degrees(low), 9), round(math.degrees(high), 9)
 

@@ -29,5 +29,5 @@ def _lines(half_m: float) -> range:
 
 
 def _look(number: int) -> tuple[float, field.Rgba]:
-    """Return the height [m] and the colour of a grid line; the two axes differ from the others."""
+    """Return the height [m] and the colour of a grid line; the two in the middle look different."""
     return (2 * _LINE_TOP_M, field.RIM) if number == 0 else (_LINE_TOP_M, field.LINE)

@@ -379,7 +379,7 @@ def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
 
 
 def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
-    """Return the question to the referee whether to change a score, with both scores.
+    """Return the question whether to change a score, with the scores before and after the change.
 
     None: the match has not two seats, or not this seat.
     """

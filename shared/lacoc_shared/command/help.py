@@ -127,7 +127,7 @@ def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]
 
 
 def _explained(show: Callable[[Any], None], error: Any) -> None:
-    """Show a mistake in the use of a command in the process's language, if there is such a text."""
+    """Show a mistake in the use of a command, in the process's language if possible."""
     message = error.message
     hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
     match type(error).__name__:

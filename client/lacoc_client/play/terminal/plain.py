@@ -70,7 +70,7 @@ def reply_dict(reply: DecisionReply) -> dict[str, Any]:
 
 
 def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
-    """Turn an outlook into plain values; its events become those of `event_dict`."""
+    """Turn an outlook into plain values, and each of its events as `event_dict` does."""
     plain: dict[str, Any] = msgspec.to_builtins(outlook)
     del plain["clock_ticks"]
     return plain | {

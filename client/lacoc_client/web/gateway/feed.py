@@ -330,7 +330,7 @@ class CourtFeed:
 
     @property
     def _log_number(self) -> int:
-        """Number of the match's log of events; it changes if earlier events may have changed."""
+        """A number that changes whenever earlier events of the match may have changed."""
         return self.picture.view.log.number
 
     @property

@@ -107,7 +107,7 @@ class PageSeat:
     async def try_out(self, asked: wire.TryAsk, threads: Threads) -> TryOutReply:
         """Ask the court how the seat's robot would walk alone.
 
-        Wait on another thread than the seat's.
+        Wait for the answer on one of `threads`, so that the seat's own thread can go on.
 
         Raises:
             UserError: if the page has no seat, or the court refuses or does not answer.

@@ -106,7 +106,7 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
 
     @property
     def right(self) -> bool:
-        """Whether the student was right."""
+        """Whether the student guessed right."""
         return self.said in self.was
 
 

@@ -51,11 +51,11 @@ class Cutter:
 
     @property
     def keeps_up(self) -> bool:
-        """True: a cutter takes every message at once."""
+        """Always true: pieces take every message at once."""
         return True
 
     def watch_closely(self) -> None:
-        """Do nothing: nobody steers a robot through a cutter."""
+        """Do nothing: pages that fetch pieces steer no robot."""
 
     def write(self, framed: bytes) -> None:
         """Add a message to the piece of the present second."""

@@ -84,7 +84,7 @@ class StudioDesk:
             return await self._studios.free().ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
-        """Let a studio search for better numbers of a gait, and tell the page how far it is."""
+        """Let a studio search for better numbers of a gait, and report to the page."""
         request = CoachRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -98,7 +98,7 @@ class StudioDesk:
         return await self._search("coach", asked.job, request, CoachReply, asked.seconds)
 
     async def map(self, asked: requests.MapAsk) -> msgspec.Raw:
-        """Let a studio search for gaits of many speeds and moods; tell the page how far it is."""
+        """Let a studio search for gaits of many speeds and arousals; report to the page."""
         request = MapRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -110,7 +110,7 @@ class StudioDesk:
         return await self._search("map", asked.job, request, MapReply, asked.seconds)
 
     async def variants(self, asked: requests.VariantsAsk) -> msgspec.Raw:
-        """Let a studio search for six gaits that look different; tell the page how far it is."""
+        """Let a studio search for six gaits that look different; report to the page."""
         request = VariantsRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),

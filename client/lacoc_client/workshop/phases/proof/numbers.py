@@ -123,7 +123,7 @@ class _Cells:
 
 @dataclass(frozen=True)
 class LegNumbers:
-    """How much a student has typed for one leg."""
+    """How many joints and postures of one leg a student has changed by typing."""
 
     joints: int
     """How many of the leg's three joints were turned by at least `NUMBER_DEG`."""
