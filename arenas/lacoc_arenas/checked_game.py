@@ -176,7 +176,7 @@ class CheckedGame:
         return found
 
     def gains(self, state: Any, seat: int) -> Gains:
-        """Return what a robot would gain next (`Game.gains`), checked.
+        """Return which points a robot could gain next (`Game.gains`), checked.
 
         If the game has no `gains`, return that it gains nothing.
         """

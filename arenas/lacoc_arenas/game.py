@@ -162,7 +162,7 @@ class Game(Protocol[S]):
         """
 
     def gains(self, state: S, seat: int) -> Gains:
-        """Return what a robot would gain next, for its player's page; no rule uses the answer.
+        """Return which points a robot could gain next, to show its player; no rule uses the answer.
 
         Args:
             state: the present state.
