@@ -1,1 +1,1 @@
-"""Games: their rules, fields and bots."""
+"""The games that robots play: their rules, fields and bots."""

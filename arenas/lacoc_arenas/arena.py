@@ -78,7 +78,7 @@ class _ArenaFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class _WrongEntry(UserError):
-    """An entry of the arena file, or an override of an entry, is wrong.
+    """Raised when an entry of the arena file, or one that the contest puts in its place, is wrong.
 
     Args:
         name: name of the arena.
@@ -143,23 +143,28 @@ class Arena:
         self.seats = file.seat
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Let another process import the code of the arena's folder before it unpickles any of it.
+        """Pickle the arena as a call that makes it again.
 
-        An `Arena` is pickled as the call that makes it again.
+        So another process imports the code of the arena's folder before it unpickles any object
+        of this code.
         """
         return from_settings, (self.name, self.settings, self.folder)
 
     def _make(self, settings: dict[str, Any]) -> AnyGame:
         """Make the game from its settings.
 
-        Check it (`checked`) if the arena is no part of LACOC.
+        If the arena is no part of LACOC, all that the game returns is checked (`checked`).
         """
         game = self._source.call("make", self._part("rules", "make"), settings, refuses=True)
         ours = self._module.startswith(f"{__package__}.")
         return game if ours else checked(self._source, game)
 
     def _part(self, part: str, name: str) -> Any:
-        """Import a module of the arena and return an object from it.
+        """Import a module of the arena and return the object `name` from it.
+
+        Args:
+            part: the module: rules, field or bots.
+            name: the object's name.
 
         Raises:
             UserError: if the module can't be imported, or lacks the object.
@@ -179,7 +184,7 @@ class Arena:
         return moved or recorded == self.name
 
     def build_field(self, spec: Any) -> None:
-        """Add floor, walls and markers to an `MjSpec`."""
+        """Add the game's floor, walls and markers to an `MjSpec`."""
         self._source.call("build", self._part("field", "build"), spec, self.game)
 
     @property
@@ -250,7 +255,7 @@ def is_installed(name: str) -> bool:
 
 
 def from_settings(name: str, settings: dict[str, Any], folder: Path | None = None) -> Arena:
-    """Make the arena of a record again, with the settings it was played with.
+    """Make the arena in which a record was played again, with the settings of the record.
 
     Args:
         name: as the record has it. It stands only for an installed arena: anybody may have
@@ -274,7 +279,7 @@ def from_settings(name: str, settings: dict[str, Any], folder: Path | None = Non
 
 
 def _require_whole(module: ModuleType) -> None:
-    """Check that a package has every part of an arena.
+    """Check that the package of an arena has every part that an arena needs.
 
     Raises:
         UserError: if a part is missing; the message names it.
@@ -299,7 +304,7 @@ def _require_whole(module: ModuleType) -> None:
 
 
 def _entries(where: str, wrong: Phrase | str) -> Sequence[str] | None:
-    """Return the names that are possible in a table of the arena file.
+    """Return the names that entries of a table of the arena file may have.
 
     None if the mistake is not an unknown name.
 

@@ -1,4 +1,4 @@
-"""Types of a bot: a brain reads frames and returns keys.
+"""Types of which bots are made: a bot makes a brain, which reads frames and returns keys.
 
 A brain is pure: it sees only the sheet and the frames. So it plays in the same way behind a
 controller (`lacoc bot`), in a headless match (`lacoc simulate`) or in a learning

@@ -1,4 +1,4 @@
-"""Find a brain: a game's own bot, an installed bot, a bot file, or the ghost of a record."""
+"""Find a bot by name: a game's own bot, an installed bot, a bot file, or the ghost of a record."""
 
 from collections import deque
 from pathlib import Path
@@ -26,7 +26,7 @@ recorded keys."""
 
 
 def find(arena: Arena, name: str) -> BotFactory:
-    """Find a bot for an arena.
+    """Find a bot by its name, for an arena.
 
     Args:
         arena: the arena, with bots of its own.
@@ -57,7 +57,7 @@ def find_installed(arena: Arena, name: str) -> BotFactory:
 
 
 def of_program(name: str, source: bytes) -> BotFactory:
-    """Make a bot of the source of a bot file; the result is as in `find`.
+    """Make a bot from the Python source of a bot file; the result is as in `find`.
 
     Args:
         name: name of the file, for messages.
@@ -110,13 +110,13 @@ def open_ghost(name: str) -> tuple[Record, int]:
 
 
 def ghost_file(name: str) -> tuple[Path, str]:
-    """Return the path of a ghost's record and the id of its seat, "" if the name has none."""
+    """Return the path of a ghost's record and the id of the ghost's seat; "": none is named."""
     path, _, seat = name.removeprefix(GHOST).partition(".mcap:")
     return Path(f"{path}.mcap" if seat else path), seat
 
 
 def ghost_join(record: Record, seat: int) -> JoinSeat:
-    """Return the last join of a ghost's seat: team, robot and gait files.
+    """Return how a ghost's seat was taken last: team, robot and gait files.
 
     Raises:
         UserError: if nobody joined this seat.
@@ -161,7 +161,7 @@ def _from_file(name: str) -> BotFactory:
 
 
 def _from_source(name: str, source: bytes) -> BotFactory:
-    """Run the source of a bot; tracebacks name its file `name`.
+    """Run the Python source of a bot; tracebacks name its file `name`.
 
     Raises:
         UserError: if it fails, or has no function `bot`.

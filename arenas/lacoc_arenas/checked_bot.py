@@ -67,7 +67,7 @@ def loaded(name: str, load: Callable[[], Any]) -> Any:
 
 
 def broken(name: str, error: BaseException, file: str | None) -> UserError:
-    """Make the error for an exception of a bot; its sentence names the failing line.
+    """Make the error for an exception that a bot raised; its sentence names the bot's failing line.
 
     Args:
         name: the bot's name, as the user typed it.

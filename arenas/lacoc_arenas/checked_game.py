@@ -34,7 +34,7 @@ class ArenaCode(NamedTuple):
     def call(
         self, what: str, function: Callable[..., Any], *arguments: object, refuses: bool = False
     ) -> Any:
-        """Call a function of the arena.
+        """Call a function of the arena's code, and turn its errors into sentences.
 
         Args:
             what: the function's name.
@@ -67,7 +67,7 @@ class ArenaCode(NamedTuple):
 
 
 def checked(source: ArenaCode, game: Any) -> AnyGame:
-    """Check a game and everything that it returns later.
+    """Check a game of another author, and everything that it returns later.
 
     Args:
         source: the arena, for error messages.
@@ -176,7 +176,7 @@ class CheckedGame:
         return found
 
     def gains(self, state: Any, seat: int) -> Gains:
-        """Return what a robot would gain next (`Game.gains`), checked.
+        """Return which points a robot could gain next (`Game.gains`), checked.
 
         If the game has no `gains`, return that it gains nothing.
         """
@@ -189,7 +189,7 @@ class CheckedGame:
         return found
 
     def set(self, state: Any, marker: int, value: int) -> Any:
-        """Set a marker, as a referee decides (`Game.set`), and check the new state."""
+        """Set a marker, as a referee has decided (`Game.set`), and check the match's new state."""
         rule = self._game.set
         try:
             found = self._source.call("set", rule, state, marker, value, refuses=True)
@@ -262,9 +262,9 @@ def _check_values(source: ArenaCode, game: AnyGame) -> None:
 
 
 def marker_of_geom(game: AnyGame, geom: str) -> tuple[int, int]:
-    """Return the indices of the marker and of the state for which a geom is shown.
+    """Return which marker a geom belongs to, and in which state of the marker it is shown.
 
-    (-1, -1) if the geom does not belong to a marker.
+    Both are indices; (-1, -1) if the geom does not belong to a marker.
 
     Raises:
         UserError: if the geom's name begins with "marker:", and there is no such marker or state.

@@ -1,4 +1,4 @@
-"""MuJoCo geoms that the fields of all games are built of.
+"""MuJoCo geoms (shapes) of which the fields of all games are built.
 
 Robots collide only with the floor and the four wall planes. Every other geom is only visible: it
 has no mass and no contacts, so it does not change the physics at all (rules 6). The geoms of a
@@ -49,7 +49,7 @@ _WALL_HEIGHT_M, _WALL_HALF_M = 0.05, 0.015
 
 
 def ground(spec: mujoco.MjSpec, size_m: tuple[float, float]) -> None:
-    """Add the floor and the four walls around it.
+    """Add the floor and the four walls around it to a model.
 
     Args:
         spec: the model to add to.
@@ -97,7 +97,7 @@ def shape(
     colour: Rgba,
     **more: Any,
 ) -> None:
-    """Add a geom that is only visible: without mass and contacts."""
+    """Add a geom that can only be seen: it has no mass and no contacts."""
     spec.worldbody.add_geom(
         name=name,
         type=kind,

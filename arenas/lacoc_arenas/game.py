@@ -23,7 +23,7 @@ Claim = tuple[int, str]
 
 
 class NoSuchState(ValueError):
-    """Raised when a marker can't have a state.
+    """Raised when a marker can't have the state that somebody wants to set.
 
     Args:
         why: the states that the marker can have (`why.*`).
@@ -38,7 +38,7 @@ class NoSuchState(ValueError):
 
 
 class WrongSetting(ValueError):
-    """Raised when entries of [game] are wrong.
+    """Raised when entries of the table [game] of an arena file are wrong.
 
     Args:
         mistakes: each entry, and what is wrong with it (`setting.*`).
@@ -53,7 +53,7 @@ class WrongSetting(ValueError):
 
 
 class Place(NamedTuple):
-    """A start place on the floor, in the world frame."""
+    """A place on the floor at which a robot can start, in the world frame."""
 
     x_m: float
     y_m: float
@@ -84,7 +84,7 @@ Observation = tuple[RobotView, ...]
 
 
 class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
-    """Something that the rules decided in a tick."""
+    """Something that the rules decided in a tick, such as a flip or a strike."""
 
     kind: str
     """The game's own word for what happened, such as flip, capture or strike."""
@@ -162,7 +162,7 @@ class Game(Protocol[S]):
         """
 
     def gains(self, state: S, seat: int) -> Gains:
-        """Return what a robot would gain next, for its player's page; no rule uses the answer.
+        """Return which points a robot could gain next, to show its player; no rule uses the answer.
 
         Args:
             state: the present state.

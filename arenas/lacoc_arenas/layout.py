@@ -1,4 +1,4 @@
-"""Types of lengths, and the symmetry of a field, for the fields of all games."""
+"""Types of lengths for all fields, and how a place moves if a field is turned by 180 degrees."""
 
 import math
 from collections.abc import Iterable

@@ -60,16 +60,16 @@ class Pose(NamedTuple):
     """World z of the body's upward direction: 1 upright, -1 on its back."""
 
     def bearing_rad(self, x_m: float, y_m: float) -> float:
-        """Return the angle by which to turn left to face a point [rad], from -pi to pi."""
+        """Return the angle by which the robot must turn left to face a point [rad], -pi to pi."""
         angle = math.atan2(y_m - self.y_m, x_m - self.x_m) - self.heading_rad
         return math.remainder(angle, math.tau)
 
     def distance_m(self, x_m: float, y_m: float) -> float:
-        """Return the distance to a point on the floor [m]."""
+        """Return the distance from the robot to a point on the floor [m]."""
         return math.hypot(x_m - self.x_m, y_m - self.y_m)
 
     def travel_s(self, x_m: float, y_m: float, reach_m: float = 0.0) -> float:
-        """Return the time to turn to a point and to walk until it is within reach [s]."""
+        """Return how long the robot needs to turn to a point and walk to `reach_m` from it [s]."""
         walk_m = max(0.0, self.distance_m(x_m, y_m) - reach_m)
         return abs(self.bearing_rad(x_m, y_m)) / TURN_RAD_S + walk_m / SPEED_M_S
 
@@ -114,7 +114,7 @@ class Pilot:
     def toward(
         self, frame: Frame, poses: list[Pose], target_m: tuple[float, float] | None
     ) -> Key | None:
-        """Return the key to press now to come nearer to a point, or [x].
+        """Return the key to press now so that the robot comes nearer to a point, or [x].
 
         None keeps the present key.
 
@@ -133,7 +133,7 @@ class Pilot:
         return wanted if (seat.level, seat.key) != wanted else None
 
     def _sequence_ended(self, seat: SeatFrame) -> bool:
-        """Say whether the current sequence has ended.
+        """Say whether the robot has gone once through the sequence of its present key.
 
         At level A, for key 0 and for a key with a single posture the answer is always yes.
         """
@@ -157,7 +157,7 @@ class Pilot:
         return restart
 
     def _watch_progress(self, poses: list[Pose], now: int, walks: bool) -> None:
-        """Choose another heading for a while if a long walk makes no progress."""
+        """Walk in another direction for a while if the robot walks for long without progress."""
         pose = poses[self._seat]
         if pose.distance_m(*self._mark_m) > _STUCK_M:
             self._mark_m, self._walked_ticks = (pose.x_m, pose.y_m), 0
@@ -186,9 +186,9 @@ class Pilot:
         return _key_for(bearing_rad, _NEAR_STRAY_RAD if near else _STRAY_RAD)
 
     def _pass(self, pose: Pose, other: Pose, bearing_rad: float) -> float:
-        """Return the bearing to walk in.
+        """Return the bearing in which to walk, so that the robot passes the other one in its way.
 
-        It passes a robot in the way, on the right if there is room.
+        It passes on the right if there is room.
         """
         blocked_rad = pose.bearing_rad(other.x_m, other.y_m)
         if abs(math.remainder(bearing_rad - blocked_rad, math.tau)) > _AHEAD_RAD:
@@ -208,7 +208,7 @@ def _is_near(pose: Pose, other: Pose) -> bool:
 
 
 def _key_for(bearing_rad: float, stray_rad: float) -> Key:
-    """Return the key to walk if the bearing is at most `stray_rad`, else the key to turn."""
+    """Return the key to walk if the bearing is at most `stray_rad`, else the key to turn to it."""
     bearing_rad = math.remainder(bearing_rad, math.tau)
     if abs(bearing_rad) <= stray_rad:
         return FORWARD

@@ -1,1 +1,1 @@
-"""Robots: their files, models, limits and samples."""
+"""Robots: their files, their models for physics, their limits, and sample robots."""

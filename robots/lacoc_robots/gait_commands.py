@@ -203,7 +203,7 @@ def convert(
 
 
 def _write(path: Path, data: bytes) -> None:
-    """Write a file, and tell its name and that of an older file, which is kept."""
+    """Write a file, and tell the user its name and that of an older file, which is kept."""
     kept = save(path, data)
     if kept is not None:
         screen.note(say("command.kept", path=str(path), kept=str(kept)))
@@ -211,7 +211,7 @@ def _write(path: Path, data: bytes) -> None:
 
 
 def _is_locomotion(target: Path) -> bool:
-    """Return whether a file to write will hold locomotion (level B), judged by its name.
+    """Return whether a file to write gets locomotion (level B), judged by the file's name.
 
     Raises:
         UserError: if this command does not write files with such a name.
@@ -222,7 +222,7 @@ def _is_locomotion(target: Path) -> bool:
 
 
 def _joined(table: PostureTable, source: Path, keys: str) -> LocomotionTable:
-    """Join postures into sequences as --keys says.
+    """Join postures into the sequences that the option --keys names.
 
     Raises:
         UserError: if --keys is written wrong, has too many keys or postures, or names a posture
@@ -263,7 +263,7 @@ def _checked(file: Path, table: PostureTable | LocomotionTable) -> CheckedFile:
 
 
 def _summary(table: PostureTable | LocomotionTable) -> Table:
-    """Return a table that shows what each key does."""
+    """Return a table that shows what each key of a gait does."""
     labels = leg_labels(table.joints // JOINTS_PER_LEG)
     summary = screen.table(say("fact.key"), say("fact.postures"), say("fact.feet-lifted"))
     for digit, sequence in sorted(_sequences(table).items()):
@@ -278,7 +278,7 @@ def _sequences(table: PostureTable | LocomotionTable) -> dict[int, tuple[Posture
 
 
 def _lifts(sequence: Sequence[Posture], labels: Sequence[str]) -> str:
-    """Name the feet that each posture lifts.
+    """Name the legs whose feet are lifted in each posture of a sequence.
 
     Postures in a row that lift the same feet are one step. Only the first six steps are named; "…"
     stands for the rest.

@@ -55,7 +55,7 @@ def labels_of(mistakes: Sequence[Mistake]) -> tuple[str, ...] | None:
 
 
 def _ids(leg: int, legs: int, lit: Collection[int], outward: int) -> list[tuple[str, str]]:
-    """List a leg's joint ids with their styles, from left to right.
+    """List the joint ids of a leg as they are drawn, from left to right, each with its style.
 
     Args:
         leg: index of the leg.

@@ -48,7 +48,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def range_deg(self) -> tuple[float, float]:
-        """The range in degrees, rounded to the numbers of the file: 60, not 59.99999999999999."""
+        """The range of the leg's joints in degrees, rounded as in the file: 60, not 59.9999999."""
         low, high = self.range_rad
         return round(math.degrees(low), 9), round(math.degrees(high), 9)
 
@@ -96,7 +96,7 @@ class LegSpec(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(self.capsule(level, points) for level in range(len(points) - 1))
 
     def capsule(self, level: int, points: Sequence[Point]) -> Capsule:
-        """Compute the shape of one link.
+        """Compute the shape of one link of the leg.
 
         Args:
             level: Root 0, 1st 1, 2nd 2.

@@ -1,4 +1,4 @@
-"""Find robots: installed samples, folders, and single robot files.
+"""Finds robots by name or path: installed ones, folders, and single robot files.
 
 A robot's folder holds `robot.toml`, and its sample gait as `Loco-data.txt` and
 `LocoTra-data.txt`. Other people's robots are installed under the entry-point group
@@ -32,7 +32,7 @@ class FolderGait(NamedTuple):
 
 
 def find_robot(name_or_path: str) -> tuple[str, bytes]:
-    """Read a robot's file.
+    """Read the file of a robot, which is named or given as a path.
 
     Args:
         name_or_path: an installed name such as "hexapod", a folder, or a .toml file.
@@ -90,7 +90,7 @@ def _robot_file(name_or_path: str) -> Path:
 
 
 def read_content(file: Path) -> bytes:
-    """Read a file.
+    """Read the bytes of a file.
 
     Raises:
         UserError: if it can't be read.

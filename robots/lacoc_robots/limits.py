@@ -54,7 +54,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     @classmethod
     def of(cls, overrides: Mapping[str, Any]) -> "Limits":
-        """Return the defaults with some limits replaced.
+        """Return the default limits with some of them replaced.
 
         Raises:
             UserError: if an override is not a limit, or not a number; the message names it.

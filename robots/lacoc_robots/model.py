@@ -40,7 +40,7 @@ _TORSION_AND_ROLL = (0.005, 0.0001)  # MuJoCo's defaults; unused with condim 3
 
 
 def set_options(parent: mj.MjSpec) -> None:
-    """Set the official solver options, so that a match is the same everywhere."""
+    """Set the options of MuJoCo's solver that every match has, so that it is the same anywhere."""
     parent.option.timestep = TIMESTEP_S
     parent.option.integrator = mj.mjtIntegrator.mjINT_IMPLICITFAST
     parent.option.solver = mj.mjtSolver.mjSOL_NEWTON

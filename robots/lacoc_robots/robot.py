@@ -48,7 +48,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def joints(self) -> int:
-        """Number of joints.
+        """Number of the robot's joints.
 
         The id of a joint is leg + number of legs * level (Root 0, 1st 1, 2nd 2).
         """
@@ -61,12 +61,12 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def ranges_rad(self) -> tuple[tuple[float, float], ...]:
-        """(joints,) lowest and highest angle [rad], by joint id."""
+        """Lowest and highest angle of each joint [rad], by joint id; (joints,)."""
         return tuple(leg.range_rad for _ in range(JOINTS_PER_LEG) for leg in self.legs)
 
     @property
     def ranges_deg(self) -> tuple[tuple[float, float], ...]:
-        """(joints,) lowest and highest angle in the file's degrees, by joint id."""
+        """Lowest and highest angle of each joint in the file's degrees, by joint id; (joints,)."""
         return tuple(leg.range_deg for _ in range(JOINTS_PER_LEG) for leg in self.legs)
 
     @property
@@ -89,7 +89,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def start_z_m(self) -> float:
-        """Height of the body's origin above the floor at the start."""
+        """Height of the body's origin above the floor when a match starts."""
         return self.start_height_m + self.size_m[2] / 2
 
     @property

@@ -73,7 +73,10 @@ def _parse(text: str | bytes, file: str) -> dict[str, object]:
 
 
 def _robot(root: Entries, limits: Limits) -> RobotSpec:
-    """Read every table. A wrong number is noted, and becomes NaN in the robot (0 in `hold_us`)."""
+    """Read every table of a robot file, and make the robot.
+
+    A wrong number is noted, and becomes NaN in the robot (0 in `hold_us`).
+    """
     body, start = root.table("body"), root.table("start")
     drive, servo = root.table("drive", optional=True), root.table("servo", optional=True)
     surface = root.table("surface", optional=True)
@@ -314,7 +317,10 @@ def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits)
 
 
 def _bounds(robot: RobotSpec, posture: Posture) -> tuple[Point, Point]:
-    """Return lowest and highest x, y and z of all parts; all NaN if a needed number is unknown."""
+    """Return the lowest and the highest x, y and z of a robot's parts in a posture.
+
+    All are NaN if a number that is needed is not known.
+    """
     ends = (c for capsule in robot.capsules(posture) for c in (*capsule.start, *capsule.end))
     radii = (leg.radius_m for leg in robot.legs)
     if any(map(math.isnan, (*robot.size_m, *ends, *radii))):

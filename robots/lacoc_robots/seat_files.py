@@ -26,7 +26,10 @@ _Table = PostureTable | LocomotionTable
 
 
 class SeatFiles(NamedTuple):
-    """The files of a join; where a file is None, the contest's robot or its sample gait is used."""
+    """The robot and gait files with which a seat is taken.
+
+    Where a file is None, the contest's robot or its sample gait is used.
+    """
 
     robot: SentFile | None = None
     postures: SentFile | None = None
@@ -36,7 +39,7 @@ class SeatFiles(NamedTuple):
 def gather(
     robot: str | None, gaits: Sequence[Path], notes: list[Phrase] | None = None
 ) -> SeatFiles:
-    """Read a contestant's files.
+    """Read the robot and gait files of a contestant.
 
     Args:
         robot: an installed robot, a folder or a robot file; None: the contest's robot.
@@ -55,7 +58,7 @@ def gather(
 
 
 def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
-    """Turn workbooks into text, which is what a court reads.
+    """Turn gait files that are workbooks into text, which is what a court reads.
 
     Each file keeps its name, so that mistakes name the contestant's own file.
 
@@ -84,7 +87,7 @@ def as_text(files: SeatFiles, notes: list[Phrase] | None = None) -> SeatFiles:
 def to_send(
     files: SeatFiles, sequences: Sequence[Sequence[int]] | None, notes: list[Phrase]
 ) -> tuple[SeatFiles, FileRefused | None]:
-    """Turn files as a team has them into files that a court reads.
+    """Turn the files that a team has into files that a court reads.
 
     A workbook with mistakes is sent without its content, so that the court can report the mistakes
     of the other files too. The court also says whether it needs the files at all: in a match that
@@ -112,7 +115,7 @@ def _emptied(file: SentFile | None) -> SentFile | None:
 
 
 def with_level_b(files: SeatFiles, sequences: Sequence[Sequence[int]] | None = None) -> SeatFiles:
-    """Make level B from the postures if there is no locomotion file.
+    """Add a locomotion file (level B), made from the postures, if there is none.
 
     Args:
         files: files as text. A posture file with mistakes stays as it is: the court reports them,
@@ -147,7 +150,7 @@ def gaits_in(folder: Path) -> list[Path]:
 
 
 def files_in(folder: Path) -> SeatFiles:
-    """Read the gait files of `gaits_in` as they are; a file's name decides its level.
+    """Read the newest gait file of each level in a folder, unchanged; its name decides its level.
 
     Raises:
         UserError: if a file can't be read.
@@ -170,7 +173,7 @@ def _newest_in(folder: Path) -> Iterator[Path | None]:
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
-    """Return warnings about the gait files in a folder.
+    """Return warnings about gait files in a folder that are not read, or are perhaps too old.
 
     There is a warning for each LocoTra workbook, because it is not read, and for a locomotion file
     that is older than the posture file.

@@ -18,7 +18,7 @@ from lacoc_shared.seat import BEAT_S
 def try_standing(
     robot: RobotSpec, gait: Gait, levels: Collection[Level], file: str
 ) -> list[Mistake]:
-    """Let a robot stand with key 0 of each level; equal postures are tried once.
+    """Let a robot stand with key 0 of each level, and list the mistakes; try equal postures once.
 
     Args:
         robot: the robot.

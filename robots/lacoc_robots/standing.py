@@ -32,7 +32,7 @@ REST_M_S = 0.0002
 
 
 class Stood(msgspec.Struct, frozen=True):
-    """What a robot did during a stand test."""
+    """How far a robot moved and tilted during a stand test."""
 
     moved_m: float
     """Largest distance of the body's centre from its start, seen from above."""

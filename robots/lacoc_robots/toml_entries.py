@@ -16,7 +16,7 @@ _HUGE = sys.float_info.max
 
 
 class Entries:
-    """The entries of one table; all tables of a file share one list of mistakes."""
+    """The entries of one TOML table; all tables of a file share one list of mistakes."""
 
     def __init__(self, table: dict[str, Any], place: str, file: str, book: list[Mistake]) -> None:
         """Prepare to read the entries of a table.
@@ -37,7 +37,7 @@ class Entries:
         return name in self._table
 
     def note(self, name: str, found: Phrase | str, expected: Phrase, **where: Any) -> None:
-        """Note a mistake in an entry."""
+        """Note a mistake in an entry of the table."""
         self._book.append(
             Mistake(
                 file=self._file,
@@ -117,7 +117,7 @@ class Entries:
         )
 
     def text(self, name: str, longest: int) -> str:
-        """Read a word or a short text; "" if it is wrong or missing."""
+        """Read an entry that is a word or a short text; "" if it is wrong or missing."""
         expected = say("robot.text", longest=longest)
         value = self._take(name, expected)
         if isinstance(value, str) and value.isprintable() and 1 <= len(value.strip()) <= longest:
@@ -127,7 +127,7 @@ class Entries:
         return ""
 
     def flag(self, name: str) -> bool:
-        """Read true or false; false if it is missing or wrong."""
+        """Read an entry that is true or false; false if it is missing or wrong."""
         expected = say("robot.flag")
         value = self._take(name, expected, False)
         if not isinstance(value, bool):
@@ -136,7 +136,7 @@ class Entries:
         return value
 
     def choice(self, name: str, options: tuple[str, ...]) -> str:
-        """Read one of several words; the first one if it is missing or wrong."""
+        """Read an entry that is one of several words; the first word if it is missing or wrong."""
         expected = say("robot.either", options=options)
         value = self._take(name, expected, options[0])
         if value in options:
@@ -145,7 +145,7 @@ class Entries:
         return options[0]
 
     def table(self, name: str, *, optional: bool = False) -> "Entries":
-        """Read a table; an empty one if it is missing or wrong."""
+        """Read an entry that is a table; an empty table if it is missing or wrong."""
         expected = say("robot.table", line=f"[{name}]")
         value = self._take(name, expected, {} if optional else None)
         if value is not None and not isinstance(value, dict):
@@ -153,7 +153,7 @@ class Entries:
         return Entries(value if isinstance(value, dict) else {}, f"{name}.", self._file, self._book)
 
     def tables(self, name: str, expected: Phrase) -> list["Entries"]:
-        """Read a list of tables, numbered from 0; none if they are missing or wrong."""
+        """Read an entry that is a list of tables, numbered from 0; none if missing or wrong."""
         value = self._take(name, expected)
         if value is None:
             return []
@@ -166,11 +166,11 @@ class Entries:
         ]
 
     def ask(self, name: str) -> None:
-        """Accept an entry without reading it."""
+        """Note that an entry is allowed, although its value is not read."""
         self._taken.add(name)
 
     def finish(self) -> None:
-        """Note a mistake for each entry that was neither read nor accepted."""
+        """Note a mistake for each entry that is neither read nor allowed."""
         known = say("robot.one-of", names=sorted(self._taken))
         for name in self._table:
             if name not in self._taken:

@@ -1,4 +1,4 @@
-"""Encode messages and decode bytes: msgpack with checks of types and size, one error class.
+"""Encodes and decodes messages: msgpack with checks of types and size, and one class of error.
 
 `msgspec` reads and writes the same bytes as `msgpack`. It also checks every type, so no value from
 the network is used before its type is checked.
@@ -21,11 +21,11 @@ encode = _encoder.encode
 
 
 class BadMessage(ValueError):
-    """Bytes that are not the expected message: the fault of the sender."""
+    """Raised when bytes are not the expected message; it is the fault of their sender."""
 
 
 def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
-    """Decode one message.
+    """Decode the bytes of one message, and check its type.
 
     Args:
         data: the bytes as they arrived.
@@ -45,7 +45,7 @@ def decode(data: bytes, kind: type[T], max_bytes: int = 65_536) -> T:
 
 
 class _AnyVersion(msgspec.Struct):
-    """The only field that the requests of all versions of the protocol have in common."""
+    """The only field that requests have in every version of the protocol."""
 
     protocol: int
 
@@ -74,7 +74,7 @@ def message_hash(message: bytes) -> bytes:
 
 
 def pack_states(states: tuple[int, ...]) -> bytes:
-    """Pack marker states, two bits each, the first in the lowest bits of the first byte."""
+    """Pack the states of markers into bytes: two bits each, from the lowest bits of a byte on."""
     packed = bytearray((len(states) + 3) // 4)
     for index, state in enumerate(states):
         packed[index >> 2] |= state << (index & 3) * 2

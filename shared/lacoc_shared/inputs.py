@@ -41,13 +41,13 @@ class ReadySeat(_Input, frozen=True, tag="ready"):
 
 
 class LeaveSeat(_Input, frozen=True, tag="leave"):
-    """A contestant left."""
+    """A contestant gave up the seat."""
 
     seat: int
 
 
 class KeySeat(_Input, frozen=True, tag="key"):
-    """A new command of a seat: a digit at a level, or `RESTART_KEY`."""
+    """A player pressed a key of a seat: a digit at a level, or `RESTART_KEY`."""
 
     seat: int
     seq: int
@@ -70,13 +70,13 @@ class SilentSeat(_Input, frozen=True, tag="silent"):
 
 
 class HeardSeat(_Input, frozen=True, tag="heard"):
-    """A silent seat's controller was heard again."""
+    """The controller of a silent seat was heard again."""
 
     seat: int
 
 
 class Decide(_Input, frozen=True, tag="decide"):
-    """A referee, or the court itself, decided."""
+    """A referee, or the court itself, made a decision about the match."""
 
     by: str
     """The referee's name; `THE_COURT` for the court itself."""
@@ -86,7 +86,7 @@ class Decide(_Input, frozen=True, tag="decide"):
 
 
 class Advice(_Input, frozen=True, tag="advice"):
-    """The court measured that the match ran too badly, or that this is not so any more."""
+    """The court advises to play the match again, because it ran too badly, or no longer does so."""
 
     reasons: tuple[Phrase | str, ...]
     """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:

@@ -34,7 +34,7 @@ _NAME = re.compile(r"[a-z0-9][a-z0-9-]{0,31}")
 
 
 def check_name(name: str) -> None:
-    """Check the name of a court or studio.
+    """Check that a name is allowed for a court or studio.
 
     Raises:
         UserError: if it is not made of a-z, 0-9 and hyphens.
@@ -68,15 +68,15 @@ class KeySpace:
 
     @property
     def event(self) -> str:
-        """Key expression of events: numbered, never lost.
+        """Key expression of events; a query to it returns all events of the match.
 
-        A query returns all listed events of the match.
+        Events are numbered, so that a client sees if one was lost, and asks for it.
         """
         return f"{self.root}/event"
 
     @property
     def sheet(self) -> str:
-        """Key expression of the sheet: the court sends each new one, and answers queries."""
+        """Key expression of the sheet: the court sends each new one, and answers queries for it."""
         return f"{self.root}/sheet"
 
     @property
@@ -99,7 +99,7 @@ class KeySpace:
         return f"{self.root}/seat/{seat}/key"
 
     def request(self, seat: str, what: str) -> str:
-        """Return the key expression of a request with a reply.
+        """Return the key expression on which a seat sends the court requests of one kind.
 
         Args:
             seat: the seat.
@@ -127,7 +127,7 @@ class KeySpace:
         return f"{self.root}/where"
 
     def office(self, what: str) -> str:
-        """Return the key expression of an office's request.
+        """Return the key expression on which the office sends a court requests of one kind.
 
         Args:
             what: assign, withdraw, tell, copy or retire; `*` means all of them.

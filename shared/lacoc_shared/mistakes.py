@@ -52,7 +52,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def place(self) -> str:
-        """The place in words: "row 3, column 7, joint 5 (L,F)"."""
+        """The place of the mistake in words: "row 3, column 7, joint 5 (L,F)"."""
         return render(say("plain.sentences", sentences=self._places()))
 
     def _places(self) -> list[Phrase | str]:
@@ -101,7 +101,7 @@ class FileRefused(ValueError):
 
 
 class UserError(Exception):
-    """A mistake that a user can correct; the message says how.
+    """Raised for a mistake that a user can correct; the message says how.
 
     Args:
         said: what was found and what to do, a sentence for each mistake; a plain text if the table
@@ -114,14 +114,17 @@ class UserError(Exception):
 
     @property
     def phrase(self) -> Phrase:
-        """The message as a phrase."""
+        """The message of the error as one phrase."""
         if len(self.said) > 1:
             return say("plain.sentences", sentences=self.said)
         (only,) = self.said or ("",)
         return only if isinstance(only, Phrase) else say("plain.text", text=only)
 
     def each(self, put: Callable[[Phrase | str], Phrase]) -> "UserError":
-        """Return an error with each sentence put into another one, which may add a place."""
+        """Return an error whose sentences are those of this one, each changed by `put`.
+
+        So a caller can add a place to each sentence, such as the name of a file.
+        """
         return UserError(*map(put, self.said))
 
     def __str__(self) -> str:

@@ -46,7 +46,7 @@ def command_mac(
     match: int,
     seen: int,
 ) -> bytes:
-    """Compute the seal of a command."""
+    """Compute the seal of a seat's command, from the command's numbers."""
     return _mac(secret, f"{key_expression} {session} {seq} {level} {key} {match} {seen}")
 
 
@@ -58,14 +58,15 @@ def request_mac(secret: bytes, key_expression: str, session: int, seq: int, *res
         key_expression: key expression of the request.
         session: number of the session.
         seq: sequence number of the request.
-        *rest: the request's own numbers (`sealed`).
+        *rest: the other numbers that the request contains, such as 1 for "ready"; the request's
+            property `sealed` returns them.
     """
     numbers = (str(int(number)) for number in (session, seq, *rest))
     return _mac(secret, " ".join([key_expression, *numbers]))
 
 
 def same(one: bytes, other: bytes) -> bool:
-    """Compare two seals in constant time."""
+    """Return whether two seals are equal; the time that it takes does not depend on them."""
     return hmac.compare_digest(one, other)
 
 

@@ -1,4 +1,4 @@
-"""Seats, phases, and the small numbers by which frames describe them."""
+"""The seats and phases of a match, and the small numbers that stand for them in frames."""
 
 from enum import IntEnum, IntFlag
 from typing import Annotated, Literal
@@ -28,7 +28,7 @@ class Phase(IntEnum):
 
     @property
     def word(self) -> str:
-        """Last part of the code of the phase's name (`phase.*`), such as "halted"."""
+        """Last part of the code with which the phase's name is looked up, such as "halted"."""
         return self.name.lower()
 
 
@@ -37,7 +37,7 @@ IN_PLAY = frozenset({Phase.COUNTDOWN, Phase.PLAYING})
 
 
 class SeatFlag(IntFlag):
-    """Properties of a seat at a beat."""
+    """What holds for a seat at a beat; a frame has a bit for each."""
 
     JOINED = 1
     READY = 2

@@ -45,7 +45,7 @@ class StudioKeys:
         return f"lacoc/{self.studio}/live/studio"
 
     def request(self, what: str) -> str:
-        """Return the key expression of a request.
+        """Return the key expression on which a studio gets requests of one kind.
 
         Args:
             what: robot, trial, coach, map, variants or cancel; `*` means all of them.
@@ -58,7 +58,7 @@ class StudioKeys:
 
 
 class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The files of a request, in the format of a join: text, no workbooks."""
+    """The robot and gait files of a request to a studio: text, no workbooks."""
 
     robot: SentFile | None = None
     """Robot file; None: the workshop's hexapod."""
@@ -72,7 +72,7 @@ class GaitFiles(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class RobotRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a description of the robot in a robot file."""
+    """Ask a studio for a description of the robot in a robot file."""
 
     protocol: int
     robot: SentFile | None = None
@@ -119,7 +119,7 @@ class RobotReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a trial of at most 60 s."""
+    """Ask a studio for a trial of at most 60 s."""
 
     protocol: int
     files: GaitFiles
@@ -130,7 +130,7 @@ class TrialRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
-    """The place of a number in a key's sequence."""
+    """The place of a number in the sequence of a key."""
 
     posture: int
     """Index of the posture in the sequence."""
@@ -139,7 +139,7 @@ class CellPlace(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Sentence(msgspec.Struct, frozen=True, kw_only=True):
-    """One sentence that explains a walk."""
+    """One sentence of the explanation why a robot walked as it did in a trial."""
 
     said: Phrase
     """The sentence (`explain.*`)."""
@@ -194,7 +194,7 @@ class TrialReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask which numbers of a key matter most, and for better numbers."""
+    """Ask the coach which numbers of a key matter most, and for better numbers."""
 
     protocol: int
     job: str
@@ -216,7 +216,7 @@ class CoachRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for a map of gaits: one for each speed and arousal (how excited it looks)."""
+    """Ask for a table of gaits: one for each speed and arousal (how excited the robot looks)."""
 
     protocol: int
     job: str
@@ -230,7 +230,7 @@ class MapRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Ask for six gaits that look different, made from one table or from two."""
+    """Ask the coach for six gaits that look different, made from one table or from two."""
 
     protocol: int
     job: str
@@ -249,7 +249,7 @@ class VariantsRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
 
 
 class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """End a search early. The reply to this request is `Done`.
+    """End a search of the coach early. The reply to this request is `Done`.
 
     The request that began the search is then answered with the best result so far; if the search
     still waits, it is refused.
@@ -260,7 +260,7 @@ class CancelRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class Progress(msgspec.Struct, frozen=True, kw_only=True):
-    """The progress of a search; a studio sends it several times a second."""
+    """The progress of a search of the coach; a studio sends it several times a second."""
 
     stage: str
     """What the studio is doing: waiting (until earlier searches end), repair, matters, search,
@@ -275,7 +275,7 @@ class Progress(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Weight(msgspec.Struct, frozen=True, kw_only=True):
-    """How a change of one number would change the score."""
+    """How much the score of a gait would change if one number of it were changed."""
 
     cell: CellPlace
     up: float
@@ -285,7 +285,7 @@ class Weight(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CellChange(msgspec.Struct, frozen=True, kw_only=True):
-    """A number that the coach changed."""
+    """A number of a gait that the coach changed."""
 
     cell: CellPlace
     from_deg: float
@@ -329,7 +329,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GaitDifference(msgspec.Struct, frozen=True, kw_only=True):
-    """A visible difference between a gait and the gait of the request."""
+    """A visible difference of a gait that was found from the gait of the request."""
 
     way: str
     """What differs: height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""
@@ -351,7 +351,7 @@ class OtherGait(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapCell(msgspec.Struct, frozen=True, kw_only=True):
-    """A cell of a map, and the best gait that was found for it."""
+    """A cell of the table of speeds and arousals, with the best gait that was found for it."""
 
     speed: int
     arousal: int
@@ -360,7 +360,7 @@ class MapCell(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapReply(msgspec.Struct, frozen=True, kw_only=True):
-    """A map of gaits."""
+    """A table of gaits by speed and arousal, as the coach found them."""
 
     key: int
     speeds_mm_s: tuple[float, ...]
@@ -380,7 +380,7 @@ class MapReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class VariantsReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The gaits that the coach offers for a choice."""
+    """The gaits that the coach offers, so that somebody can choose one."""
 
     key: int
     variants: tuple[OtherGait, ...]

@@ -80,10 +80,10 @@ class NearestFlag(_Hunter):
 
 
 class FlagPlanner(_Hunter):
-    """Weighs the points of a route over flags and corners against the time it takes."""
+    """Chooses a route over flags and corners by its points and by the time that it takes."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
-        """Return the first target of the best route found."""
+        """Return the first marker of the best route that was found."""
         worths = self._worths(board, scores, poses)
         start = Route(pose=poses[self.seat])
         best = best_route(start, lambda route: self._grow(route, worths), _DEPTH, _BEAM)
@@ -92,7 +92,7 @@ class FlagPlanner(_Hunter):
     def _worths(
         self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]
     ) -> dict[int, float]:
-        """Return the worth to this seat of each marker that can be gained; only worths above 0."""
+        """Return, for each marker that this seat can gain, how much it is worth, if above 0."""
         pose, other = poses[self.seat], poses[1 - self.seat]
         worths = {}
         for marker, info in enumerate(self.game.markers):
@@ -109,7 +109,7 @@ class FlagPlanner(_Hunter):
         return worths
 
     def _ends(self, board: tuple[int, ...], corner: int) -> bool:
-        """Say whether taking this corner ends the match (workshop 5-2 rule 4)."""
+        """Say whether the match ends if this seat takes a corner, because it then has all four."""
         own = self.seat + 1
         return all(board[other] == own for other in range(CORNERS) if other != corner)
 

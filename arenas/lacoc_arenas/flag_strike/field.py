@@ -23,7 +23,7 @@ _THIN_M = 0.002
 
 
 def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
-    """Add floor, walls, start pads, corners, flags and probes."""
+    """Add floor, walls, start pads, corners and flags with their probes (poles) to a model."""
     field.ground(spec, game.size_m)
     settings = game.settings
     for number, (left, right) in enumerate(zip(*game.starts, strict=True)):
@@ -49,7 +49,7 @@ def build(spec: mujoco.MjSpec, game: FlagStrike) -> None:
 
 
 def _cloth_m(flag: Flag, height_m: float) -> tuple[float, float]:
-    """Return half length and half height of the cloth [m].
+    """Return half the length and half the height of a flag's cloth [m].
 
     The cloth is larger for a flag with more points, so that one sees the points without the colour.
     """
@@ -121,7 +121,7 @@ def _lying(spec: mujoco.MjSpec, flag: Flag, state: int, radius_m: float, height_
 
 
 def _along(flag: Flag) -> float:
-    """Return the direction in which a flag's cloth points and its pole falls [rad].
+    """Return the direction in which a flag's cloth points, and in which its pole falls [rad].
 
     It is counter-clockwise round the field. So the field looks the same when it is turned by 180
     degrees.

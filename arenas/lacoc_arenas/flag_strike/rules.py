@@ -146,7 +146,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield (corner, seat) for each robot that has just come into a corner and so takes it."""
+        """Yield the corner and the seat of each robot that takes a corner, as it just came in."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)
@@ -169,7 +169,7 @@ class FlagStrike:
     def _strikes(
         self, state: State, observation: Observation, struck: AbstractSet[Claim]
     ) -> tuple[tuple[tuple[int, int], ...], list[tuple[int, int]]]:
-        """Find the void touches and the strikes of a tick.
+        """Find the flags that are struck in a tick, and the touches that do not count.
 
         Returns:
             The touches that are void after the tick, each as (seat, flag); and the strikes, each as
@@ -199,7 +199,7 @@ class FlagStrike:
         return state.board
 
     def score(self, state: State) -> tuple[int, ...]:
-        """Return each seat's points: corners held and flags struck (workshop 5-2 rule 7)."""
+        """Return each seat's points, for the corners that it holds and the flags that it struck."""
         left = right = 0
         for owner, points in zip(state.board, self._points, strict=True):
             if owner == LEFT:

@@ -26,7 +26,7 @@ class FlagColour(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_field
 
 
 class Flag(NamedTuple):
-    """One flag of a layout."""
+    """One flag on the field: its place, colour and points."""
 
     name: str
     colour: FlagColour
@@ -38,7 +38,7 @@ class Flag(NamedTuple):
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The table [game] of the arena file."""
+    """The table [game] of the arena file of Flag-Strike."""
 
     size_m: tuple[Length, Length]
     corner_radius_m: Length
@@ -79,7 +79,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
     @property
     def flags(self) -> tuple[Flag, ...]:
-        """All flags in the order of the file."""
+        """All flags of the game, in the order of the arena file."""
         places = [(colour, place) for colour in self.colour for place in colour.flags]
         return tuple(
             Flag(f"flag{number}", colour, x_m, y_m)

@@ -1,1 +1,1 @@
-"""Learned bots: which numbers of a frame they see, and how these numbers choose a key."""
+"""Learned bots: which numbers of a frame they see, and how they choose a key from these."""

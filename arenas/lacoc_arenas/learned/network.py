@@ -1,4 +1,4 @@
-"""A learned policy as layers of numbers, and as a bot file.
+"""A learned policy (a neural network) as layers of numbers, and as a bot file.
 
 A bot file holds the layers as text. To play, it needs neither MuJoCo nor the library that trained
 the policy.
@@ -43,7 +43,7 @@ def bot(sheet, seat):
 
 
 class Layer(NamedTuple):
-    """One layer: its output is `weights @ input + biases`."""
+    """One layer of a policy: its output is `weights @ input + biases`."""
 
     weights: npt.NDArray[np.float64]
     """Shape (outputs, inputs)."""
@@ -106,7 +106,7 @@ class Network:
 
     @property
     def inputs(self) -> int:
-        """Number of numbers that the policy sees."""
+        """How many numbers the policy takes at a time."""
         return int(self.layers[0].weights.shape[1])
 
     def choose(self, numbers: Numbers) -> int:
@@ -119,7 +119,7 @@ class Network:
         return int(values.argmax())
 
     def brain(self, sheet: Sheet, seat: int) -> Brain:
-        """Make a brain for one match.
+        """Make a brain that plays the policy in one match.
 
         Raises:
             UserError: if a frame of this match gives more or fewer numbers than the policy takes.
@@ -152,10 +152,9 @@ def _digits(keys: Sequence[int]) -> tuple[int, ...]:
 
 
 def press(frame: Frame, seat: int, digit: int) -> Key | None:
-    """Return the key that makes a digit the present one.
+    """Return the key to press, so that `digit` becomes the digit of the seat's present key.
 
-    None if the digit is the present one already (never for [x]), or if the seat's keys are refused
-    now.
+    None if it is this already (never for [x]), or if the seat's keys are refused now.
     """
     now = frame.seats[seat]
     if now.locked_ticks or (digit == now.key and now.level == Level.LOCOMOTION):

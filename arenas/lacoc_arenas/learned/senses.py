@@ -97,7 +97,7 @@ class Senses:
         return numbers
 
     def _read(self, frame: Frame) -> tuple[Any, ...]:
-        """Read the numbers of a frame: bodies and commands by seat, and the clock."""
+        """Read the numbers of a frame: each seat's body and present key, and the clock."""
         if frame.markers != self._packed:
             self._packed, self._boards = frame.markers, self._read_board(frame.markers)
         poses = self._unpack(frame.poses)

@@ -24,7 +24,7 @@ _REPLAN_TICKS = 4 * BEATS_PER_S
 
 
 class _Walker(ABC):
-    """A brain that walks from cell to cell; subclasses choose the next cell."""
+    """A brain that walks from cell to cell of the board; subclasses choose the next cell."""
 
     def __init__(self, sheet: Sheet, seat: int) -> None:
         self.game = make(sheet.settings["game"])
@@ -51,7 +51,7 @@ class _Walker(ABC):
         return self._pilot.toward(frame, poses, target_m)
 
     def blocked(self, cell: int, poses: list[Pose]) -> bool:
-        """Say whether another robot is near the disc of a cell."""
+        """Say whether another robot is near the disc of this cell."""
         return any(
             other.distance_m(*self.discs[cell]) < _BLOCKED_M
             for seat, other in enumerate(poses)
@@ -60,7 +60,7 @@ class _Walker(ABC):
 
     @abstractmethod
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """Return the cell to go to, or `NO_CELL`.
+        """Return the cell of the board to go to, or `NO_CELL`.
 
         Args:
             cells: the board.
@@ -96,10 +96,10 @@ class NearestDisc(_Walker):
 
 
 class DiscPlanner(_Walker):
-    """Looks several cells ahead and weighs the discs of a route against the time it takes."""
+    """Chooses a route over several cells by the discs that it gains and the time that it takes."""
 
     def choose(self, cells: tuple[int, ...], last: int, poses: list[Pose]) -> int:
-        """Return the first cell of the best route found."""
+        """Return the first cell of the best route that was found."""
         start = Route(pose=poses[self.seat], board=cells)
         best = best_route(start, lambda route: self._grow(route, last, poses), _DEPTH, _BEAM)
         return best.markers[0] if best.markers else NO_CELL

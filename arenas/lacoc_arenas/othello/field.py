@@ -13,7 +13,7 @@ _RIM_M, _MARGIN_M = 0.006, 0.03
 
 
 def build(spec: mujoco.MjSpec, game: Othello) -> None:
-    """Add floor, walls, board and discs."""
+    """Add the floor, the walls, the board and the discs to a model."""
     field.ground(spec, game.size_m)
     radius_m = game.settings.disc_radius_m
     edge_m = game.markers[-1].x_m + radius_m + min(_MARGIN_M, game.settings.wall_m / 2)

@@ -40,7 +40,7 @@ NO_CELL = -1
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The table [game] of the arena file."""
+    """The table [game] of the arena file of Robot-Othello."""
 
     pitch_m: Length
     disc_radius_m: Length
@@ -224,7 +224,7 @@ class Othello:
         )
 
     def board(self, state: State) -> tuple[int, ...]:
-        """Return the state of each disc."""
+        """Return the state of each disc, by its index."""
         return state.cells
 
     def score(self, state: State) -> tuple[int, ...]:

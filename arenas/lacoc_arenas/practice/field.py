@@ -12,7 +12,7 @@ _GRID_M, _LINE_HALF_M, _LINE_TOP_M = 0.2, 0.0015, 0.001
 
 
 def build(spec: mujoco.MjSpec, game: Practice) -> None:
-    """Add floor, walls and a line every 20 cm."""
+    """Add the floor, the walls and a line every 20 cm to a model."""
     field.ground(spec, game.size_m)
     half_x_m, half_y_m = game.size_m[0] / 2, game.size_m[1] / 2
     for number in _lines(half_x_m):
@@ -29,5 +29,5 @@ def _lines(half_m: float) -> range:
 
 
 def _look(number: int) -> tuple[float, field.Rgba]:
-    """Return the height [m] and the colour of a grid line; the two axes differ from the others."""
+    """Return the height [m] and the colour of a grid line; the two in the middle look different."""
     return (2 * _LINE_TOP_M, field.RIM) if number == 0 else (_LINE_TOP_M, field.LINE)

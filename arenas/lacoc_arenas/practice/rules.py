@@ -13,7 +13,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The table [game] of the arena file."""
+    """The table [game] of the arena file of practice."""
 
     size_m: tuple[Length, Length]
     start: Point
@@ -26,7 +26,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
 
 
 class State(msgspec.Struct, frozen=True):
-    """The state of practice; empty, because there is nothing to win."""
+    """The state of a practice match: empty, because there is nothing to win."""
 
 
 class Practice:
@@ -41,7 +41,7 @@ class Practice:
         self.starts = ((Place(*settings.start, math.radians(settings.heading_deg)),),)
 
     def start(self) -> State:
-        """Return the only state that there is."""
+        """Return the only state that a practice match has."""
         return State()
 
     def step(
@@ -51,7 +51,7 @@ class Practice:
         dt_s: float,
         struck: AbstractSet[Claim] = frozenset(),
     ) -> tuple[State, tuple[GameEvent, ...]]:
-        """Return the same state and no events."""
+        """Return the same state and no events, because practice has no rules to apply."""
         return state, ()
 
     def board(self, state: State) -> tuple[int, ...]:

@@ -122,7 +122,7 @@ def _sit(
     patience: Patience,
     stopping: Callable[[], bool],
 ) -> None:
-    """Join an open seat and play there, match after match."""
+    """Let the bot join an open seat and play there, match after match."""
     notes: list[Phrase] = []
     files, own_team = bring(notes)
     for note in notes:
@@ -157,7 +157,7 @@ def _play_match(
     arena: str | None,
     stopping: Callable[[], bool],
 ) -> bool:
-    """Play one match of a team; return whether it is over.
+    """Let the bot play one match of a team; return whether the match is over.
 
     False: the seat was refused, the court is gone, or the bot is asked to stop.
     """
@@ -178,7 +178,7 @@ def _play_match(
 
 
 def _ground(controller: Controller, arena: str | None) -> Arena:
-    """Return the arena that has the bot: the named one, else the arena that the court plays."""
+    """Return the arena whose bot plays: the named arena, else the one that the court plays."""
     sheet = controller.view.sheet
     return arenas.load(arena) if arena else arenas.from_settings(sheet.arena, sheet.settings)
 
@@ -186,9 +186,9 @@ def _ground(controller: Controller, arena: str | None) -> Arena:
 def _brings(
     name: str, robot: str | None, gaits: list[Path], notes: list[Phrase]
 ) -> tuple[SeatFiles, str]:
-    """Return a bot's files and its team name.
+    """Return the robot and gait files that a bot plays with, and its team name.
 
-    A ghost has the files of its recorded match, unless others are given.
+    A ghost has the files of its recorded match, unless the user gave others.
     """
     if not name.startswith(brains.GHOST):
         return gather(robot, gaits, notes), text_of(Path(name).stem)
@@ -217,7 +217,7 @@ def _play(
 
 
 def _look(controller: Controller, player: BotPlayer) -> None:
-    """Show the bot the newest frame; print refused keys, phases and the result."""
+    """Pass the newest frame to the bot; print refused keys, new phases and the result."""
     frame = controller.wait_frame(0.1)
     if frame is not None:
         player.see(frame)

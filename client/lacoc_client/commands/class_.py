@@ -1,4 +1,4 @@
-"""`lacoc class`: a class designs gaits in the browser (workshop 3-2, 4-1, 4-2)."""
+"""`lacoc class`: a class designs gaits in the browser, as in the workshop."""
 
 import asyncio
 import shutil
@@ -33,7 +33,7 @@ class _ClassGroup(TyperGroup):
     usual = "open"
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Insert `open` before the words if the first is no subcommand.
+        """Insert the word `open` before the command line's words if the first is no subcommand.
 
         See `click.Group.parse_args`.
         """

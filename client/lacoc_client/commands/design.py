@@ -1,4 +1,4 @@
-"""`lacoc design`: design a gait on a page (workshop 3-2, 4-2)."""
+"""`lacoc design`: design a gait on a page, as in the workshop."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
@@ -79,7 +79,7 @@ def design_command(
 
 @contextmanager
 def own_studio() -> Iterator[str]:
-    """Run a studio for this machine until the block ends, and yield its address."""
+    """Run a studio for this machine until the `with` block ends, and yield its address."""
     with (
         Scratch("design") as folder,
         kept_child(

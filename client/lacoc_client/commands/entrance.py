@@ -121,7 +121,7 @@ def contestant(
 
 
 def _with_token(access: Access) -> Access:
-    """Return the access unchanged, after a check that it has a token.
+    """Return the access to a court unchanged, after a check that it contains a token.
 
     Raises:
         UserError: if it has no token.

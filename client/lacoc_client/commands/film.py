@@ -151,7 +151,7 @@ def film_command(
 
 
 def _stills(out: Path, count: int) -> list[Path]:
-    """Return the paths for the stills of a film, one for each match."""
+    """Return the paths to which a film's still pictures are written, one for each match."""
     if count == 1:
         return [out.with_suffix(".png")]
     return [out.with_name(f"{out.stem}-{number}.png") for number in range(1, count + 1)]
@@ -173,7 +173,7 @@ def look_of(
 
 
 def _check(record: Path, out: Path, highlights: bool, moments: Path | None) -> None:
-    """Check paths and options before anything is drawn.
+    """Check the paths and options of the command before a film is drawn.
 
     Raises:
         UserError: if one of them is wrong, or they do not fit together.

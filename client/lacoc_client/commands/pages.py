@@ -38,7 +38,7 @@ def public_address(
     proxy: Sequence[str] | None,
     own: PublicAddress | None = None,
 ) -> PublicAddress:
-    """Return how others reach the pages, from the options of a command.
+    """Return the address at which others reach the pages, from the options of a command.
 
     Args:
         pages: `options.Pages`.
@@ -74,7 +74,7 @@ def check_pages(*, terminal: bool = True) -> None:
 
 
 def show_page(home: Home, path: str, browser: bool, json: bool = False) -> None:
-    """Serve a page of courts to this person's browser until Ctrl-C.
+    """Serve a gateway's pages and show one in the user's browser, until Ctrl-C.
 
     Args:
         home: the gateway's settings.
@@ -98,7 +98,7 @@ def show_app(
     most_bytes: int = JOIN_BYTES,
     json: bool = False,
 ) -> None:
-    """Serve an application to this person's browser until Ctrl-C.
+    """Serve a gateway's application and show a page of it in the user's browser, until Ctrl-C.
 
     Args:
         app: a gateway's application.

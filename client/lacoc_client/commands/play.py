@@ -101,9 +101,9 @@ def play_command(
 
 
 def own_files(robot: str | None, gaits: list[Path]) -> OwnFiles:
-    """Read the given files.
+    """Read the robot and gait files that the user named.
 
-    Without a gait file, read those of the current folder and name them to the user.
+    If the user named no gait file, read those of the current folder and tell the user which.
 
     Raises:
         FileRefused: with every mistake of every gait file.
@@ -150,7 +150,7 @@ def follow(
     *,
     ready: bool,
 ) -> None:
-    """Play at the terminal, at each court to which the token's team is called.
+    """Play at the terminal, at each court to which the team with the token is called.
 
     Args:
         access: how to reach any court of the event, and the token.
@@ -197,7 +197,7 @@ def _play_match(
 ) -> bool:
     """Play one match at the terminal, or all matches at an open seat.
 
-    Return whether the team plays on.
+    Return whether the team goes on to another match.
     """
     access = way.access(there)
     with open_client(access.addresses, authority=access.authority) as session:
@@ -240,7 +240,7 @@ def _seated(
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:
-    """Wait for the sheet that has this team's robot.
+    """Wait for a sheet of the match in which this team has its robot.
 
     It comes a moment after the answer to the join.
     """

@@ -1,4 +1,4 @@
-"""`lacoc practice`: practise on a court of your own (workshop 4-4)."""
+"""`lacoc practice`: practise alone on a court of your own."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -67,7 +67,7 @@ def _greeting(files: SeatFiles) -> Text:
 
 @contextmanager
 def _court(folder: Path, recordings: Path) -> Iterator[Access]:
-    """Run a court with the practice arena in a process of its own, until the block ends.
+    """Run a court with the practice arena in a process of its own, until the `with` block ends.
 
     Yield its address, with seat and token.
     """

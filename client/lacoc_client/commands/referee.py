@@ -148,7 +148,7 @@ _COMMON: dict[str, tuple[Any, Any]] = {
 
 
 def _command(name: str, kind: type[Decision]) -> Callable[..., None]:
-    """Make the function that runs a decision's subcommand.
+    """Make the function that the subcommand of a decision runs.
 
     Its parameters are the decision's fields.
     """
@@ -200,7 +200,7 @@ def _annotation(field: FieldInfo) -> Any:
 
 
 def _is_argument(field: FieldInfo) -> bool:
-    """Return whether a field must be given.
+    """Return whether a field of a decision must be given on the command line.
 
     `gives_s` must be given too: its default is only for old records.
     """
@@ -379,7 +379,7 @@ def _ends_play(decision: Clock, frame: Frame, _: Health, sheet: Sheet) -> bool:
 
 
 def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
-    """Return the question whether to change a score, with the scores before and after.
+    """Return the question whether to change a score, with the scores before and after the change.
 
     None: the match has not two seats, or not this seat.
     """
@@ -398,7 +398,7 @@ def _rescored(decision: Adjust, frame: Frame, sheet: Sheet) -> Phrase | None:
 
 
 def _ask(name: str, question: Phrase) -> None:
-    """Ask the user at the terminal whether a decision shall be made.
+    """Ask the user at the terminal whether to make a decision.
 
     Raises:
         UserError: if there is no terminal to ask at.
@@ -417,7 +417,7 @@ def _decide_when_legal(
     name: str,
     decide: Callable[[], DecisionReply],
 ) -> DecisionReply:
-    """Decide as soon as the court says that the decision is legal.
+    """Make a decision as soon as the court says that it is legal.
 
     The court's health is up to half a second old, so a decision may be refused although health
     calls it legal. If the next health message still calls it legal, the refusal is raised.
@@ -448,7 +448,7 @@ def _decide_when_legal(
 
 
 def _look(view: Spectator) -> tuple[Frame, Health]:
-    """Wait until a court has sent a frame and its health, and return both.
+    """Wait until a court has sent a frame and its health, and return the two.
 
     Raises:
         UserError: if the court sends no health.

@@ -91,7 +91,7 @@ class _End:
         self._ended_s: float | None = None
 
     def __call__(self) -> bool:
-        """Return whether to end: on request, or after the match and its last event."""
+        """Return whether to end: if somebody asked for it, or the match's last event has come."""
         if self._stopping():
             return True
         frame = self._view.frame
@@ -123,7 +123,10 @@ def _print_json(view: Spectator, hz: float, end: _End) -> None:
 
 
 def _draw(view: Spectator, terminal: LineView | BoardView, end: _End) -> None:
-    """Draw in place on a terminal; in a pipe print events as lines, and one picture at the end."""
+    """Draw the match again and again on a terminal.
+
+    If the output is a pipe, print the events as lines, and one picture at the end.
+    """
     console = screen.stdout
     in_place = console.is_terminal
     drawn_s = 0.0

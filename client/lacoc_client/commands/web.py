@@ -148,7 +148,7 @@ def web_command(
 
 
 def _again(stack: ExitStack, found: FoundEvent, court: str | None) -> Home:
-    """Return the settings of a second gateway for the pages of a link, for a larger crowd."""
+    """Return the settings of a further gateway that serves an event's pages to a larger crowd."""
     event = found.event
     sheet = stack.enter_context(Scratch("mirror")) / contest_sheet.NAME
     stack.enter_context(SheetMirror(found.link.pages, event.authority, sheet))
@@ -164,13 +164,13 @@ def _again(stack: ExitStack, found: FoundEvent, court: str | None) -> Home:
 
 
 def _alone(courts: dict[str, Access]) -> Home:
-    """Return the settings of a gateway of a court that was started alone."""
+    """Return the settings of a gateway for courts that were started alone, without a contest."""
     told = {name: tuple(access.addresses) for name, access in courts.items()}
     return Home(courts=courts, recordings=_RECORDINGS, told=told)
 
 
 def _of_contest(plan: ContestFile, file: Path, court: str | None, host: str) -> Home:
-    """Return the settings of the gateway of a contest.
+    """Return the settings of a gateway that serves the courts of a contest.
 
     Args:
         plan: the contest file.

@@ -96,7 +96,7 @@ class CameraPage:
         return base64.b64decode(self._page.evaluate(_SOUND, wanted))
 
     def _opened(self) -> tuple[int, int, str]:
-        """Wait until the page can show the record.
+        """Wait until the opened page can show the record.
 
         Return first beat, last beat, and how the page draws.
         """
@@ -116,7 +116,7 @@ class CameraPage:
 
 @contextmanager
 def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
-    """Open the page of a record in a new browser; the browser ends with the block.
+    """Open the page of a record in a new browser, until the `with` block ends.
 
     Args:
         address: the page's address.
@@ -131,7 +131,7 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
 
 @contextmanager
 def window(look: Look) -> Iterator[tuple[Page, bool]]:
-    """Open an empty page in a new browser; the browser ends with the block.
+    """Open an empty page in a new browser, until the `with` block ends.
 
     Args:
         look: the window has its size.

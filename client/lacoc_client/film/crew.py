@@ -24,7 +24,7 @@ _LOOK_S = 0.2
 
 
 class Drawing:
-    """A browser that draws its part of the pictures, on a thread of its own.
+    """A browser that draws its part of a film's pictures, on a thread of its own.
 
     Args:
         address: the page's address.
@@ -53,7 +53,7 @@ class Drawing:
         return _got(self._ends)
 
     def begin(self, pictures: Sequence[Picture], fps: int) -> None:
-        """Begin to draw this browser's part of the pictures; may be called once."""
+        """Begin to draw this browser's part of a film's pictures; may be called once."""
         self._wanted.put((pictures, fps))
 
     def sound(self) -> bytes:
@@ -73,7 +73,7 @@ class Drawing:
         return _got(self._drawn)
 
     def stop(self) -> None:
-        """End the browser and its thread."""
+        """End this browser and the thread on which it draws."""
         self._stopped.set()
         self._thread.join()
 
@@ -108,7 +108,7 @@ class Drawing:
 
 
 class Crew:
-    """All browsers that draw one record; `drawn_by` makes it."""
+    """All browsers that together draw one record; `drawn_by` makes a crew."""
 
     def __init__(self, drawings: Sequence[Drawing]) -> None:
         self._drawings = drawings
@@ -123,7 +123,7 @@ class Crew:
         return ends
 
     def begin(self, pictures: Sequence[Picture], fps: int) -> bytes:
-        """Begin to draw, and return the sound of all pictures; may be called once.
+        """Begin to draw a film's pictures, and return the sound of all; may be called once.
 
         Raises:
             UserError: if it can't be made.
@@ -133,7 +133,7 @@ class Crew:
         return self._drawings[0].sound()
 
     def pictures(self, count: int) -> Iterator[bytes]:
-        """Yield the pictures as PNG, in order; may be called once, after `begin`.
+        """Yield the pictures of the film as PNG, in order; may be called once, after `begin`.
 
         Raises:
             UserError: if one can't be drawn.
@@ -144,7 +144,7 @@ class Crew:
 
 @contextlib.contextmanager
 def drawn_by(count: int, address: str, look: Look) -> Iterator[Crew]:
-    """Open some browsers with the page of a record; they end with the block.
+    """Open some browsers with the page of a record, until the `with` block ends.
 
     Args:
         count: how many.

@@ -32,7 +32,7 @@ part that is being drawn."""
 
 @dataclass(frozen=True)
 class FilmPart:
-    """A record in a film, and what the film shows of it."""
+    """A record of which a film shows something: all of it, or some moments."""
 
     record: Record
     paths: tuple[Path, ...]
@@ -45,7 +45,7 @@ class FilmPart:
 
     @property
     def moments(self) -> list[Moment]:
-        """The moments to choose from."""
+        """The moments of the match from which those that the film shows are chosen."""
         return list(self.chosen) or moments.by_score(self.record)
 
     def shots(self, first: int, last: int) -> list[Shot]:
@@ -73,7 +73,7 @@ class FilmPart:
 
 
 def part(path: Path, count: int | None = None, *, opening: bool = False) -> FilmPart:
-    """Read a record for a film.
+    """Read the record of a match that a film shows.
 
     Args:
         path: a packed file, or a segment.
@@ -90,7 +90,7 @@ def part(path: Path, count: int | None = None, *, opening: bool = False) -> Film
 def make(
     parts: Sequence[FilmPart], out: Path, look: Look, fps: int, browsers: int, progress: Progress
 ) -> int:
-    """Make a film.
+    """Make a film of one or several matches.
 
     Args:
         parts: its records, in order.
@@ -147,7 +147,7 @@ def _add(
 
 
 def _way(beat: int, first: int) -> list[Picture]:
-    """Return the pictures for a still: those of the time just before its beat, and of the beat.
+    """Return the pictures that the page must show for a still: some before its beat, and its own.
 
     The earlier pictures let the automatic camera move to where it must be at the beat.
 

@@ -1,11 +1,11 @@
-"""How a film looks."""
+"""How a film looks: size, camera, quality, texts."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 
 
 class View(StrEnum):
-    """What the camera shows."""
+    """What the camera of a film shows."""
 
     AUTO = "auto"
     ARENA = "arena"
@@ -15,7 +15,7 @@ class View(StrEnum):
 
 
 class Quality(StrEnum):
-    """How finely the picture is drawn."""
+    """How finely the pictures of a film are drawn."""
 
     LOW = "low"
     """As a page draws it without a graphics card."""

@@ -28,7 +28,7 @@ class Moment(msgspec.Struct, frozen=True):
 
 
 class _MomentsFile(msgspec.Struct):
-    """The form of a file of moments."""
+    """The JSON of a file of moments."""
 
     moments: list[Moment]
 
@@ -72,7 +72,7 @@ def _frames(record: Record) -> list[tuple[int, Frame]]:
 
 
 def of_frames(frames: Iterable[tuple[int, Frame]]) -> list[Moment]:
-    """Return the moments of frames; see `by_score`.
+    """Return the moments in which the score changed, from a match's frames; see `by_score`.
 
     Args:
         frames: the frames with their beats, in rising order.

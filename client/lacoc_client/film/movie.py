@@ -73,7 +73,7 @@ class Movie:
         """How many samples of each side are written."""
 
     def hear(self, samples: bytes) -> None:
-        """Add the sound of the next pictures.
+        """Add the sound that belongs to the next pictures.
 
         Args:
             samples: of the left and the right side in turn, each with 16 bits, little endian.
@@ -81,7 +81,7 @@ class Movie:
         self._samples += samples
 
     def add(self, picture: bytes, number: int | None = None) -> None:
-        """Add a picture.
+        """Add a picture to the film.
 
         Args:
             picture: PNG or JPEG.
@@ -104,13 +104,13 @@ class Movie:
         self._sound_on()
 
     def end(self) -> None:
-        """Write the pictures and sounds that are still in the encoders."""
+        """Write the pictures and sounds of the film that are still in the encoders."""
         self._container.mux(self._stream.encode(None))
         if self._track is not None:
             self._container.mux(self._track.encode(None))
 
     def _sound_on(self) -> None:
-        """Write the sound up to the end of the newest picture.
+        """Write the film's sound up to the end of the newest picture.
 
         Where sound is missing, write silence.
         """
@@ -130,7 +130,7 @@ class Movie:
 
 @contextmanager
 def movie(out: Path, width: int, height: int, fps: int, sound_hz: int = 0) -> Iterator[Movie]:
-    """Open a film for writing; when the block has ended, the film is at `out`.
+    """Open a film for writing; when the `with` block has ended, the film is at `out`.
 
     If the block fails, or the program is killed, no new file gets the film's name, and an older
     file of this name stays. When the film is complete, an older file is kept under a numbered name.

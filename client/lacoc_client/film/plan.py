@@ -1,4 +1,4 @@
-"""Which beats of a match a film shows, picture by picture."""
+"""Decides which beats of a match a film shows, picture by picture."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -75,7 +75,7 @@ def highlights(
 
 
 def pictures(shots: Iterable[Shot], fps: int) -> list[Picture]:
-    """Return the pictures of some shots.
+    """Return the pictures of a film that shows these shots.
 
     A shot has a picture at its first beat, and then one each 1/`fps` seconds up to its last beat.
 

@@ -37,7 +37,7 @@ class Shots:
         return base64.b64decode(self._framed(how) if self.paced else self._screenshot(how))
 
     def frame(self, **wanted: Any) -> dict[str, Any]:
-        """Let the browser draw the page once, and return its answer."""
+        """Let the browser draw the page once; return the reply of its DevTools."""
         found: dict[str, Any] = self._tools.send("HeadlessExperimental.beginFrame", wanted)
         return found
 

@@ -25,7 +25,7 @@ _SPLIT = "split"
 
 @dataclass(frozen=True)
 class FilmSite:
-    """A small site on this machine with the page /film and a record."""
+    """A small web site on this machine with the page /film and a record."""
 
     base: str
     """Address of the site, such as "http://127.0.0.1:40000"."""
@@ -33,7 +33,7 @@ class FilmSite:
     """The parts of the record, by the names under which they are served."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the page that shows the record with a look."""
+        """Return the address of the page that shows the record, in the look of the film."""
         query = [
             *(("file", name) for name in self.files),
             ("q", "high" if look.quality is Quality.HIGH else "low"),
@@ -48,7 +48,7 @@ class FilmSite:
 
 @contextmanager
 def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
-    """Serve the page and a record until the block ends.
+    """Serve the film's page and a record until the `with` block ends.
 
     Args:
         paths: the record's files, in order.

@@ -1,4 +1,4 @@
-"""Requests to a court, and the errors from its refusals."""
+"""Sends requests to a court, and turns its refusals into errors."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -27,19 +27,19 @@ _WAIT_AGAIN_S = 0.5
 
 
 class NoCourt(UserError):
-    """No court of the asked name answers."""
+    """No court with the name that was asked for answers."""
 
 
 class NoAnswer(NoCourt):
-    """The court did not answer; it may still have done what it was asked to do."""
+    """The court received a request and did not answer; it may still have done what was asked."""
 
 
 class NotNow(UserError):
-    """The court refuses for now; it may accept the same request later."""
+    """The court refuses a request for now; it may accept the same request later."""
 
 
 class Patience:
-    """How long a command waits for its court; the time starts again after each success.
+    """How long a command waits for its court; after each answer it waits as long again.
 
     Args:
         wait_s: how long; None: do not wait, because a person can try again.
@@ -52,7 +52,7 @@ class Patience:
         self._told = ""
 
     def until(self, do: Callable[[], T]) -> T:
-        """Call `do`, and call it again as long as no court answers, or the court refuses for now.
+        """Call `do`; call it again while no court answers or the court refuses for now.
 
         Returns:
             What `do` returns when it succeeds.
@@ -88,7 +88,7 @@ def ask(
     reply: type[T],
     timeout_s: float = ANSWER_S,
 ) -> T:
-    """Ask a court and decode its answer.
+    """Send a court a request, and decode its answer.
 
     Args:
         session: the connection.
@@ -111,7 +111,7 @@ def ask(
 def fetch(
     session: Session, keys: KeySpace, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
 ) -> bytes:
-    """Ask a court and return its answer as bytes; see `ask`.
+    """Send a court a request, and return its answer as bytes; it raises the errors of `ask`.
 
     For a moment after its first frame, a restarted court does not receive requests yet. So the
     request is sent again, as long as it is certain that no court received it.
@@ -135,7 +135,7 @@ def fetch(
 
 
 def refusal_of(payload: bytes) -> FileRefused | UserError:
-    """Make the error that stands for a court's refusal.
+    """Make the error that is raised when a court refuses a request.
 
     Returns:
         `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted
@@ -151,7 +151,7 @@ def refusal_of(payload: bytes) -> FileRefused | UserError:
 
 
 def understand(payload: bytes, kind: type[T]) -> T:
-    """Decode a message of a court.
+    """Decode a message that a court has sent.
 
     Raises:
         UserError: if it can't be decoded, because the court has another version.
@@ -162,7 +162,7 @@ def understand(payload: bytes, kind: type[T]) -> T:
 
 @contextmanager
 def understood() -> Iterator[None]:
-    """Turn a `BadMessage` from the block into a `UserError` with a sentence for people.
+    """Turn a `BadMessage` that the `with` block raises into a `UserError` with a sentence.
 
     Raises:
         UserError: in place of `BadMessage`.

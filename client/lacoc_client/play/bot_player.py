@@ -14,7 +14,7 @@ _ASK_AGAIN_S = 1.0
 
 
 class BotPlayer:
-    """Says ready and presses a bot's keys, match after match.
+    """Plays for a bot: says ready and presses the keys that the bot returns, match after match.
 
     Args:
         controller: holds the seat.
@@ -56,7 +56,7 @@ class BotPlayer:
         self._pressed = controller.press(int(key.level), key.key), key
 
     def _is_on_its_way(self, key: Key, answered_seq: int) -> bool:
-        """Return whether this was the last key pressed and the court has not answered it yet."""
+        """Return whether the bot pressed this key last, and the court has not reacted to it yet."""
         return (
             self._pressed is not None
             and self._pressed[1] == key

@@ -83,14 +83,14 @@ _HOLDS = {
 
 
 class SeenFrame(NamedTuple):
-    """A frame that a player has seen."""
+    """Names a frame that the player has seen: its match and its beat."""
 
     match: int
     beat: int
 
 
 class RefusedKey(NamedTuple):
-    """A command that the match has refused."""
+    """A key press that the match has refused, with the reason."""
 
     level: int
     key: int
@@ -98,7 +98,7 @@ class RefusedKey(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The key as people press it: a digit, or x."""
+        """The refused key as people press it: a digit, or x."""
         return "x" if self.key == RESTART_KEY else str(self.key)
 
 
@@ -109,7 +109,7 @@ class _PressedKey(NamedTuple):
 
 
 class Controller:
-    """Holds one seat of a court for a person, a bot or a ghost.
+    """Holds one seat of a court for a player: a person, a bot or a ghost.
 
     One thread uses it. While the seat is held, that thread calls `poll` or `wait_frame` at least
     ten times a second: they repeat the last command, so that the seat does not become silent. After
@@ -252,7 +252,7 @@ class Controller:
         return self._request("ready", ready)
 
     def leave(self) -> Phrase | None:
-        """Give the seat up.
+        """Give up the seat.
 
         Returns:
             A sentence from the court, if it sent one.
@@ -298,7 +298,7 @@ class Controller:
         return lambda: ask(self._session, self._keys, key, request, TryOutReply)
 
     def saw(self, frame: SeenFrame) -> None:
-        """Tell the court that the player still sees frames, for a player who sees them on a page.
+        """Tell the court that the player, who sees the match on a page, still sees new frames.
 
         Args:
             frame: the frame that the player saw.
@@ -308,7 +308,7 @@ class Controller:
             self._send(self._seen)
 
     def press(self, level: int, key: int, upon: SeenFrame | None = None) -> int:
-        """Send a new command, which is repeated until the next one.
+        """Send a new command of the seat; `poll` repeats it until the next one.
 
         Args:
             level: a `Level`.
@@ -333,7 +333,7 @@ class Controller:
         return self._seq
 
     def poll(self, now_s: float) -> Frame | None:
-        """Repeat the command if it is time, and read the messages that arrived.
+        """Send the last command again if it is time, and read the court's messages that arrived.
 
         Args:
             now_s: `time.monotonic()`.
@@ -357,7 +357,9 @@ class Controller:
         return frame
 
     def wait_frame(self, timeout_s: float) -> Frame | None:
-        """Wait for a new frame, and repeat the command meanwhile; None if no frame came in time.
+        """Wait for a new frame; return it, or None if none came in time.
+
+        Meanwhile send the last command again and again.
 
         Raises:
             UserError: if the court's messages can't be decoded.
@@ -370,7 +372,7 @@ class Controller:
         return frame
 
     def take_refused(self) -> list[RefusedKey]:
-        """Return the commands that the match refused since the last call."""
+        """Return the key presses that the match refused since the last call."""
         refused, self._refused = self._refused, []
         return refused
 
@@ -399,7 +401,7 @@ class Controller:
         return ask(self._session, self._keys, key, request, Done).said
 
     def _sealed(self, what: str, make: Callable[[int, int], _Sealed]) -> tuple[str, _Sealed]:
-        """Make a request of the seat and seal it; return its key expression and the request.
+        """Make a request for the seat, with its seal; return its key expression and the request.
 
         Args:
             what: the kind of request, as in `KeySpace.request`.
@@ -417,7 +419,7 @@ class Controller:
         self._seen = max(self._seen or frame, frame)
 
     def _newest(self) -> SeenFrame | None:
-        """Return the frame that a repeated command names; None: do not repeat it now.
+        """Return the frame that the command names when it is repeated; None: do not repeat it now.
 
         None if the player sees the frames elsewhere and has seen no recent one: an old frame does
         not count as a sign of life.
@@ -431,7 +433,7 @@ class Controller:
         return seen if is_fresh else None
 
     def _send(self, upon: SeenFrame | None = None) -> None:
-        """Send the newest command, with the frame that the player saw."""
+        """Send the newest command; it names the frame `upon`, or the newest that the player saw."""
         assert self._joined is not None
         seen, key_expression = upon or self._newest(), self._keys.command(self.seat)
         if seen is None:
@@ -442,7 +444,10 @@ class Controller:
         self._sent_s = time.monotonic()
 
     def _compare(self, seat: SeatFrame) -> None:
-        """Compare the pressed keys with those that the frame shows as applied or refused."""
+        """Note which of the pressed keys a frame shows as applied or refused.
+
+        From this follow the refused keys and the time from a key press to its effect.
+        """
         newest = max(seat.applied_seq, seat.refused_seq)
         for seq in [seq for seq in self._pressed if seq <= newest]:
             press = self._pressed.pop(seq)

@@ -19,7 +19,7 @@ _OUTLOOK_S = 30.0
 
 
 class RefereeClient:
-    """Sends decisions to a court.
+    """Sends a referee's decisions to a court.
 
     Args:
         session: an open client session.
@@ -33,7 +33,7 @@ class RefereeClient:
         self._token = token
 
     def enter(self) -> None:
-        """Show the court the token, without a decision.
+        """Show the court the referee's token, without a decision.
 
         Raises:
             UserError: if it is not a referee's token of the court, or no court answers.
@@ -58,7 +58,7 @@ class RefereeClient:
         return ask(self._session, self._keys, key, request, DecisionReply)
 
     def look_ahead(self, decision: Decision | None, seconds: float) -> Outlook:
-        """Ask what would happen if play went on; the match stays as it is.
+        """Ask the court what would happen if play went on; the match stays as it is.
 
         Args:
             decision: a decision that would be made before play goes on; None: no decision.

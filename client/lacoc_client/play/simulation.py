@@ -46,7 +46,7 @@ class BeginLine(OutputLine, frozen=True, tag="begin"):
 
 
 class MatchResult(msgspec.Struct, frozen=True):
-    """The part of a record's result that is needed here."""
+    """The part of a match's result that a tournament of a class needs."""
 
     scores: tuple[int, int]
     official: str
@@ -103,7 +103,7 @@ class Simulation:
         )
 
     async def lines(self) -> AsyncIterator[OutputLine]:
-        """Yield the lines that the command prints, until the command ends.
+        """Yield the lines that `lacoc simulate` prints, until the command ends.
 
         The end of the command counts, not the end of its output: after a kill, the command's
         worker processes keep the output open until their matches have ended.
@@ -123,7 +123,7 @@ class Simulation:
             reading.cancel()
 
     async def complaint(self) -> str | None:
-        """Wait until the command has ended; return the error that it printed, or None."""
+        """Wait until the command has ended; return the error that it printed; None if none."""
         while self._process.returncode is None:
             await asyncio.sleep(_LOOK_S / 10)
         if self._process.returncode == 0:
@@ -134,12 +134,12 @@ class Simulation:
         return complaint(last_line, self._process.returncode)
 
     def end(self) -> None:
-        """Ask the command to end, as Ctrl-C does."""
+        """Ask the running `lacoc simulate` to end, as Ctrl-C does."""
         with contextlib.suppress(ProcessLookupError):
             self._process.terminate()
 
     def close(self) -> None:
-        """Kill the command."""
+        """Kill the running `lacoc simulate`."""
         self._complaining.cancel()
         with contextlib.suppress(ProcessLookupError):
             self._process.kill()

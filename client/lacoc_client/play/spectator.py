@@ -77,7 +77,7 @@ class Spectator:
         return tuple(self._view.log)
 
     def poll(self) -> Frame | None:
-        """Read the messages that arrived.
+        """Read the messages of the court that have arrived.
 
         Returns:
             The newest frame; None if no frame came since the last call, or its sheet is not here
@@ -121,11 +121,11 @@ class Spectator:
         return frame
 
     def wait(self, timeout_s: float) -> None:
-        """Sleep until a frame is there, for at most `timeout_s`."""
+        """Sleep until a frame has arrived, for at most `timeout_s`."""
         self._frames.wait(timeout_s)
 
     def take_events(self) -> list[Event]:
-        """Return the events since the last call, of this match and of the match before it."""
+        """Return the events that came since the last call, of this match and the one before."""
         events, self._new_events = self._new_events, []
         return events
 
@@ -134,7 +134,7 @@ class Spectator:
         return max(0.0, now_s - self.frame_s)
 
     def scene(self) -> Scene:
-        """Fetch the drawable model of the match from the court.
+        """Fetch from the court what is needed to draw the match's robots and field.
 
         Raises:
             UserError: if no court answers, or its scene does not fit its sheet.
@@ -147,10 +147,10 @@ class Spectator:
         raise UserError(_OTHER_SCENE)
 
     def _read(self, mail: Mail, kind: type[T]) -> T | None:
-        """Decode a message of the court; None if it can't be decoded.
+        """Decode a message of the court; return None if it can't be decoded.
 
-        In that case the sheet is requested, because it says whether the court has another version
-        of the protocol. A single bad message raises no error.
+        Then the sheet is requested, because it says whether the court has another version of the
+        protocol. A single bad message raises no error.
 
         Raises:
             UserError: if too many messages in a row can't be decoded.
@@ -177,7 +177,7 @@ class Spectator:
         self.sheet = understand(payload, Sheet)
 
     def _ask_for_what_is_missing(self, told: Health) -> None:
-        """Request events and sheet if the court's health shows that they did not arrive."""
+        """Request events or the sheet if the court's health shows that some did not arrive."""
         self._view.see_health(Told(told.match, told.beat, told.events, told.sheet))
         if self._view.lacks_events:
             self._lacking_events.ask()
@@ -185,7 +185,7 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Return whether the sheet here belongs to a frame; request the sheet if it is late."""
+        """Return whether the newest sheet here belongs to a frame; if not for long, fetch it."""
         self._view.see_frame(frame.scene)
         if self._view.fits:
             self._other_since_s = None
@@ -206,16 +206,16 @@ class Spectator:
         self._new_events.sort(key=lambda event: (event.match, event.number))
 
     def _take_answers(self) -> None:
-        """Read the answers to requests that have come."""
+        """Read the court's answers to requests for lost events and for the sheet, if any came."""
         if (events := self._lacking_events.take()) is not None:
             self._read_events(events)
         if (sheet := self._lacking_sheet.take()) is not None:
             self._read_sheet(sheet)
 
     def _take_events(self) -> None:
-        """Read new events; while a list of events is requested, leave them for later.
+        """Read new events, unless all events of the match have been requested from the court.
 
-        The list is older than the new events, so it must be read first.
+        The answer to this request is older than the new events, so it must be read first.
         """
         while not self._lacking_events.is_asked and (mail := self._events.take()) is not None:
             event = self._read(mail, Event)
@@ -231,7 +231,7 @@ class Spectator:
 
 
 class _Lacking:
-    """Requests one kind of message that did not arrive; at most one request is open at a time."""
+    """Requests from a court one kind of message that was lost; one request at a time."""
 
     def __init__(self, session: Session, key: str) -> None:
         self._session = session
@@ -240,20 +240,20 @@ class _Lacking:
 
     @property
     def is_asked(self) -> bool:
-        """True while a request is open."""
+        """Whether a request has been sent and not answered yet."""
         return self._question is not None
 
     def ask(self) -> None:
-        """Send the request, unless the answer is under way."""
+        """Send the request to the court, unless one waits for its answer already."""
         if self._question is None:
             self._question = self._session.question(self._key, timeout_s=_ANSWER_S)
 
     def forget(self) -> None:
-        """Drop the open request, because the message has arrived without it."""
+        """Wait for no answer any more, because the message has arrived without the request."""
         self._question = None
 
     def take(self) -> bytes | None:
-        """Return the answer once it has arrived; None before that, and after it was returned."""
+        """Return the court's answer if it has arrived since the last call; else None."""
         if self._question is None:
             return None
         try:

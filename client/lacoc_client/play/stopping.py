@@ -1,4 +1,4 @@
-"""Signals that end a program: a loop checks for them, so that nothing is left half-done."""
+"""Signals that end a program: its loop checks for them, so that it leaves nothing half-done."""
 
 import signal
 from collections.abc import Callable, Iterator
@@ -12,7 +12,7 @@ def stop_signals() -> Iterator[Callable[[], bool]]:
     """Catch the signals that ask the program to end.
 
     Yield a function that returns whether such a signal has arrived. Signals are caught until the
-    block ends, or until the first signal has arrived: a second one ends the program as usual.
+    `with` block ends, or until the first one has arrived: a second one ends the program as usual.
     """
     asked: list[int] = []
     numbers = [getattr(signal, name) for name in _SIGNALS if hasattr(signal, name)]

@@ -1,4 +1,4 @@
-"""Finds where a team plays: asks a court with the team's token, in a contest again and again."""
+"""Finds at which court a team plays: asks a court with the team's token, again and again."""
 
 import time
 from collections.abc import Callable
@@ -26,7 +26,7 @@ _OUT_S = 20.0
 
 
 def where(session: Session, court: str, token: str) -> Whereabouts:
-    """Ask a court where a team plays.
+    """Ask a court where the team with a token plays.
 
     Args:
         session: a connection to the court.
@@ -43,7 +43,7 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
 
 
 class TeamWay:
-    """Leads a team to its seat, and from court to court; used as a context manager.
+    """Finds the seats where a team plays, from court to court; used as a context manager.
 
     Args:
         access: how to reach any court of the event, and the token.
@@ -102,7 +102,7 @@ class TeamWay:
         return self._newest.team
 
     def next(self) -> Whereabouts | None:
-        """Wait until the team is called to a court; None: its contest is over.
+        """Wait until the team is called to a court, and return where; None: the contest is over.
 
         Raises:
             UserError: if the token is not valid any more.
@@ -126,7 +126,7 @@ class TeamWay:
             self._look()
 
     def played(self, call: str) -> None:
-        """Note that the match of this call is over, so that `next` waits for another call."""
+        """Note that the match of this call is over; `next` then waits for another."""
         self._past = call
         self._look()
 
@@ -136,16 +136,16 @@ class TeamWay:
         self._look()
 
     def access(self, there: Whereabouts) -> Access:
-        """Return address, seat and token with which the team joins where it was called."""
+        """Return address, seat and token with which the team takes its seat at a court."""
         own = self._access
         if there.address:
             own = Access(court=there.court, connect=there.address, authority=own.authority)
         return replace(own, court=there.court).of_seat(there.seat, self._access.token)
 
     def _first(self, patience: Patience) -> Whereabouts:
-        """Return the court's first answer.
+        """Ask the court where the team plays, until it answers for the first time.
 
-        If the user gave no time to wait, wait as long as the office is still opening.
+        If the user gave no time to wait, wait as long as the contest's office still starts.
         """
         while True:
             try:
@@ -165,7 +165,7 @@ class TeamWay:
             raise
 
     def _court_there(self, court: str) -> str:
-        """Return the court to ask: the given one, or another if it is gone and nobody named it."""
+        """Return the court to ask: the given one; if that is gone and any will do, another one."""
         if not self._any_court:
             return court
         there = [key.split("/")[1] for key in self._session.present(EVERY_COURT)]
@@ -207,7 +207,7 @@ class TeamWay:
 
 
 def call_is_over(view: Spectator, call: str) -> bool:
-    """Return whether the match of a call has ended officially, or its court has another match."""
+    """Return whether the match of a call is over: its result is official, or another one began."""
     frame, sheet = view.frame, view.sheet
     if sheet.call != call:
         return True

@@ -1,1 +1,1 @@
-"""Serves browsers: matches, recordings, a contest's pages and its office (docs/gateway.md)."""
+"""Serves pages to browsers: matches, recordings, a contest and its office (docs/gateway.md)."""

@@ -1,1 +1,1 @@
-"""Reads the workshop's C header of a robot, and writes it as a robot file (workshop 4-3)."""
+"""Reads the C header in which the workshop describes a robot, and makes a robot file of it."""

@@ -33,7 +33,7 @@ _CONSTANTS: dict[str, Value] = {"M_PI": math.pi, "M_PI_2": math.pi / 2, "M_PI_4"
 
 
 class Unread(NamedTuple):
-    """A declaration that could not be read."""
+    """A declaration of a C file that could not be read."""
 
     name: str
     line: int
@@ -58,7 +58,7 @@ class _Token(NamedTuple):
 
 
 class _CanNotRead(Exception):
-    """An expression contains something that this module does not read."""
+    """Raised when a C expression contains something that this module does not read."""
 
     def __init__(self, why: Phrase) -> None:
         super().__init__(why.code)
@@ -66,7 +66,7 @@ class _CanNotRead(Exception):
 
 
 def read_c(text: str) -> CValues:
-    """Read what a C file defines and declares outside of functions."""
+    """Read the values that a C file defines and declares outside of functions."""
     macros: dict[str, list[_Token]] = {}
     code: list[str] = []
     for number, line in enumerate(_lines(_COMMENT.sub(_blank, text)), 1):
@@ -97,7 +97,7 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _blank(match: re.Match[str]) -> str:
-    """Return a text without words in place of a comment or a string, with as many line ends."""
+    """Return the text that takes the place of a comment or a string: only its line ends."""
     return " " + "\n" * match[0].count("\n")
 
 
@@ -128,7 +128,10 @@ def _expanded(
 def _take(
     found: CValues, name: str, tokens: Sequence[_Token], macros: Mapping[str, list[_Token]]
 ) -> None:
-    """Compute and store the value of a name, or note that it could not be read."""
+    """Compute the value that a C file gives to a name, and store it in `found`.
+
+    If it can't be read, note this in `found`.
+    """
     line = tokens[0].line if tokens else 0
     try:
         whole = [*islice(_expanded(tokens, macros, (name,)), _MOST_TOKENS)]
@@ -140,7 +143,7 @@ def _take(
 
 
 class _Declarations:
-    """Goes through the declarations of a file, and skips the bodies of functions."""
+    """Reads the declarations of a C file one by one, and skips the bodies of functions."""
 
     def __init__(
         self,
@@ -165,7 +168,7 @@ class _Declarations:
                 self._at += 1
 
     def _declarators(self) -> None:
-        """Read "a = 1, b[2] = {1, 2};" after its type."""
+        """Read what follows the type in a declaration, such as "a = 1, b[2] = {1, 2};"."""
         while self._at < len(self._tokens):
             token = self._tokens[self._at]
             self._at += 1
@@ -190,7 +193,7 @@ class _Declarations:
         return self._tokens[self._at].text if self._at < len(self._tokens) else ""
 
     def _skip_value(self) -> None:
-        """Skip a value: go to the comma or semicolon behind it."""
+        """Skip the value of a declaration: go to the comma or semicolon behind it."""
         depth = 0
         while self._at < len(self._tokens):
             text = self._tokens[self._at].text
@@ -211,7 +214,7 @@ class _Declarations:
 
 
 class _Expression:
-    """Computes one expression or one list in braces."""
+    """Computes the value of one C expression, or of one list in braces."""
 
     def __init__(self, tokens: Sequence[_Token], known: Mapping[str, Value]) -> None:
         self._tokens = tokens
@@ -220,7 +223,7 @@ class _Expression:
         self._depth = 0
 
     def value(self) -> Value:
-        """Return the value of all tokens.
+        """Return the value of the whole expression or list.
 
         Raises:
             _CanNotRead: if the expression contains something that is not read here.

@@ -28,7 +28,7 @@ _RANGE_DEG = "[-150, 150]"
 
 
 class CFile(NamedTuple):
-    """A C file."""
+    """A C file of the workshop: its name and its text."""
 
     name: str
     text: str
@@ -94,7 +94,7 @@ class _HeaderRobot:
         self._start = start or (0.0, 0.0, self._link + self._radius)
 
     def toml(self, name: str) -> Iterator[str]:
-        """Return the lines of the robot file."""
+        """Return the lines of the robot file that is made."""
         h = 0.5 * self._h
         yield f"# Made by 'lacoc robot import'. {render(say('header.look'), LANGUAGES[0])}"
         yield ""
@@ -146,7 +146,7 @@ class _HeaderRobot:
         return DEFAULTS[name]
 
     def _list(self, name: str, count: int) -> tuple[float, ...] | None:
-        """Return the numbers of a list; as in C, numbers that are left out are 0.
+        """Return the numbers of a list in the C files; as in C, those left out are 0.
 
         Returns:
             None if there is no list of this name, or it can't be used.
@@ -177,7 +177,7 @@ class _HeaderRobot:
         return weights[0], [weights[1 + leg :: legs] for leg in range(legs)]
 
     def _posture(self) -> tuple[float, ...]:
-        """Return the start posture [degrees], by joint id."""
+        """Return the robot's start posture [degrees], by joint id."""
         angles = self._list("Joint_Angle", JOINTS_PER_LEG * self._legs)
         if angles is not None:
             return tuple(math.degrees(angle) for angle in angles)

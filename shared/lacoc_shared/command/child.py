@@ -33,7 +33,7 @@ def command_line(words: Sequence[str]) -> list[str]:
 
 
 def apart() -> dict[str, Any]:
-    """Return the options of `subprocess` with which a `lacoc` process is started.
+    """Return the options for `subprocess` with which a program starts a `lacoc` process.
 
     Of the LACOC_ variables, the new process inherits only the language. Ctrl-C does not reach the
     new process; the process that started it must end it. If the starter is killed, the new process
@@ -104,7 +104,7 @@ class Child:
             screen.note(_text(self._complained))
 
     def close(self) -> None:
-        """End the process."""
+        """End the process that was started."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._process.terminate()
@@ -117,7 +117,7 @@ class Child:
 
 @contextmanager
 def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, Any]]:
-    """Run a `lacoc` command until the block ends; yield the message that it prints when ready.
+    """Run a `lacoc` command until the `with` block ends; yield the message it prints when ready.
 
     Args:
         words: the words of the command line after `lacoc`.

@@ -71,7 +71,7 @@ class _Commands(UserDict[str, Any]):
 
     @contextmanager
     def only_list(self) -> Iterator[None]:
-        """In the block, return commands with the help of the listing, without importing them."""
+        """Return stand-ins for commands, and import nothing, until the `with` block ends."""
         self._only_lists = True
         try:
             yield
@@ -95,13 +95,13 @@ class LazyGroup(TyperGroup):
         return list(self.commands)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Print the help; imports only commands of other packages."""
+        """Print the help of the group; import only commands of other packages."""
         self.epilog = listing.advice(self.listing)
         with self.commands.only_list():
             super().format_help(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
-        """List the completions of a word; imports only commands of other packages."""
+        """List the completions of a word for the shell; import only commands of other packages."""
         with self.commands.only_list():
             return super().shell_complete(ctx, incomplete)
 
@@ -131,7 +131,7 @@ def _is_ours(entry: EntryPoint) -> bool:
 
 
 def _listed(name: str, listed: ListedCommand) -> TyperCommand:
-    """Make a stand-in for a command that is not imported, for a list of commands."""
+    """Make a stand-in for a command that was not imported; lists of commands show it."""
     panel = help_text.in_words(listed.panel) or None
     return TyperCommand(name, help=listed.in_words(), rich_help_panel=panel)
 
@@ -221,7 +221,7 @@ app.callback(invoke_without_command=True, no_args_is_help=False)(_options)
 
 
 def main(args: Sequence[str] | None = None) -> int:
-    """Run the command line.
+    """Run the command `lacoc`.
 
     Args:
         args: the words after `lacoc`; None takes those of this process.

@@ -17,7 +17,7 @@ _NO_ROOM = (
 
 
 class Damaged(Exception):
-    """The file is damaged: SQLite can't read it as a database."""
+    """Raised when SQLite can't read a file as a database."""
 
 
 def connect(
@@ -57,7 +57,7 @@ def connect(
 
 
 def problem(path: Path, error: sqlite3.Error, opening: bool = False) -> Damaged | UserError:
-    """Return the exception to raise for an error of SQLite.
+    """Return the exception that a program raises in place of an error of SQLite.
 
     Args:
         path: the database file.

@@ -13,7 +13,7 @@ def folder() -> Path:
 
 
 def translated(name: str, language: str) -> Path:
-    """Return a page in a language; if it is not translated, in English.
+    """Return the file of a page about LACOC in a language; if not translated, in English.
 
     Args:
         name: name of the page, such as "rules".

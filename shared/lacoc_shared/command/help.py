@@ -37,14 +37,14 @@ _english: dict[str, Any] = {}
 
 @cache
 def japanese() -> Mapping[str, str]:
-    """Read the table of help: a mapping from each English text to its Japanese."""
+    """Read the table of the help: a mapping from each English text to its Japanese."""
     file = resources.files("lacoc_shared.words") / "texts" / "help.toml"
     table = tomllib.loads(file.read_text(encoding="utf-8"))
     return {pair["en"]: pair["ja"] for pair in table["text"] + table["typer"]}
 
 
 def in_words(text: str) -> str:
-    """Return a text of the help in the language of this process."""
+    """Return a text of the help of commands in the language of this process."""
     return text if words.current() == "en" else japanese().get(text, text)
 
 
@@ -89,7 +89,7 @@ def translate_typer() -> None:
 
 
 def _folded(make: Callable[..., Any], **what: Any) -> Any:
-    """Call `make`, typer's function for a text, and allow line breaks at any place in its text.
+    """Call `make`, typer's function that makes a text; allow line breaks anywhere in the text.
 
     Japanese has no spaces. So a table would take a line for one long word, and cut off its end.
     """
@@ -100,7 +100,7 @@ def _folded(make: Callable[..., Any], **what: Any) -> Any:
 
 @cache
 def _context(base: Any) -> Any:
-    """Derive a class from a context class; its help is in the language of this process."""
+    """Derive, from a click context class, one whose help is in the language of this process."""
 
     class Formatter(base.formatter_class):  # type: ignore[misc]
         def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
@@ -127,7 +127,7 @@ def _resolved(group: Any, resolve: Callable[..., Any], ctx: Any, args: list[str]
 
 
 def _explained(show: Callable[[Any], None], error: Any) -> None:
-    """Show a mistake in the use of a command in this language; unknown mistakes stay English."""
+    """Show a mistake in the use of a command, in the process's language if possible."""
     message = error.message
     hint = error.param.get_error_hint() if getattr(error, "param", None) else ""
     match type(error).__name__:
@@ -143,7 +143,7 @@ def _explained(show: Callable[[Any], None], error: Any) -> None:
 
 
 def sentence(text: str, *values: str) -> str:
-    """Return a sentence of the help in this language, with values in place of each "{}"."""
+    """Return a sentence of the help in the process's language, with values for its "{}"."""
     return in_words(text).format(*values)
 
 

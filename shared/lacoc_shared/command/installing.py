@@ -1,4 +1,4 @@
-"""Returns the command that installs missing packages, from the place where this LACOC came from.
+"""Says with which command missing packages are installed, from where this LACOC came from.
 
 LACOC may not be in an index of packages. Its installation may record that it came from a folder, a
 file or a repository; then its extras are installed from there too. If no place is recorded, or the
@@ -31,7 +31,7 @@ EXTRA_OF = {
 
 
 def missing(extra: str) -> bool:
-    """Say whether a module of an extra is not installed; imports none of them."""
+    """Return whether a module of an extra is not installed; import none of them."""
     return any(
         find_spec(module) is None for module, of_extra in EXTRA_OF.items() if of_extra == extra
     )
@@ -112,7 +112,7 @@ def _packages(lacoc: Distribution, extras: tuple[str, ...]) -> list[str]:
 
 
 def _installer() -> list[str]:
-    """Return the words that start the installer of this environment."""
+    """Return the words with which a command line calls the installer of this environment."""
     if find_spec("pip") is None:  # such an environment was made by uv
         return ["uv", "pip", "install", "--python", _quoted(sys.executable)]
     found = shutil.which("pip")

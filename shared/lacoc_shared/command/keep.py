@@ -1,4 +1,4 @@
-"""Makes folders, and writes files without losing older ones (workshop 4-1, rules 2)."""
+"""Makes folders, and writes files without losing older ones of the same name."""
 
 import contextlib
 import itertools
@@ -59,14 +59,14 @@ def _write(file: FileIO, data: bytes) -> None:
 
 
 def _put_back(kept: Path | None, path: Path) -> None:
-    """Give an older file its name again if no newer one has taken its place."""
+    """Give an older file its own name again if no newer file has taken the name."""
     if kept is not None:
         with contextlib.suppress(OSError):
             os.replace(kept, path)
 
 
 def make_room(path: Path) -> Path | None:
-    """Rename a file with the first free number, so that its name is free for a new file.
+    """Rename a file: add the first free number, so that its name is free for a new file.
 
     Returns:
         New path of the file ("Loco-data.1.txt"), or None if there is no such file.

@@ -14,7 +14,7 @@ _JAPANESE = 0x11
 
 
 def of_process(environment: Mapping[str, str] | None = None) -> Language:
-    """Find the language of a terminal.
+    """Find the language of the user at this terminal.
 
     The first of LACOC_LANGUAGE, LC_ALL, LC_MESSAGES and LANG that is set decides. If none is set,
     the language of the Windows menus decides, or the locale of another system.

@@ -1,4 +1,4 @@
-"""Tables with what the help says of commands, so that the help need not import the commands.
+"""Tables with what the help says about commands, so that the help need not import them.
 
 Importing all commands takes a second. So their first sentences are here, and a test compares them
 with the commands. The tables also say which commands need packages that may not be installed.
@@ -34,7 +34,7 @@ class ListedCommand(NamedTuple):
         return bool(self.extra) and installing.missing(self.extra)
 
     def in_words(self) -> str:
-        """Return what the list says of the command, in the language of this process."""
+        """Return what a list of commands says of this one, in the language of the process."""
         summary = help_text.summary_in_words(self.summary)
         if self.lacking:
             summary += " " + escape(help_text.sentence(NEEDS, self.extra))

@@ -27,7 +27,7 @@ _DIM, _WARN, _PLAIN = "\x1b[2m", "\x1b[33m", "\x1b[0m"
 
 
 class _Writer:
-    """Writes lines in order on its own thread."""
+    """Writes the lines of the log, in order, on a thread of its own."""
 
     def __init__(self) -> None:
         self._lines: queue.Queue[str | None] = queue.Queue(_WAITING_MOST)
@@ -49,7 +49,7 @@ class _Writer:
     info = warning = msg  # structlog calls the method of the level
 
     def close(self) -> None:
-        """Wait until all queued lines are written, but at most a second.
+        """Wait until all queued lines of the log are written, but at most a second.
 
         If the queue is full, do not wait at all.
         """
@@ -92,7 +92,7 @@ def start(as_json: bool) -> None:
 
 
 def get(**always: Any) -> FilteringBoundLogger:
-    """Return a logger that adds given values to every line."""
+    """Return a logger that adds the given values to every line of the log."""
     logger: FilteringBoundLogger = structlog.get_logger(**always)
     return logger
 

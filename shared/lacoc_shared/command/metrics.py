@@ -1,7 +1,8 @@
 """Metrics of a running process for Prometheus, at their own address.
 
-Each part of the program keeps its numbers as plain values. A scrape reads them on its own thread,
-without a lock, so it never delays the part that is measured.
+Each part of the program keeps its numbers as plain values. When Prometheus asks for the metrics (a
+scrape), they are read on another thread, without a lock. So a scrape never delays the part that is
+measured.
 """
 
 import re
@@ -58,7 +59,7 @@ _App = Callable[[dict[str, Any], Callable[..., Any]], Iterable[bytes]]
 
 
 def _only_metrics(app: _App) -> _App:
-    """Let an application answer at /metrics only; the library's own would answer at every path."""
+    """Make an application answer at /metrics only; that of the library answers at every path."""
 
     def answer(environ: dict[str, Any], start: Callable[..., Any]) -> Iterable[bytes]:
         if environ.get("PATH_INFO") == "/metrics":

@@ -16,7 +16,7 @@ _followed = threading.Event()
 
 
 def follow() -> None:
-    """Make this process end with SIGTERM when its parent has ended, if the parent wants this."""
+    """Make this process get SIGTERM when its parent has ended, if the parent has asked for it."""
     if os.environ.pop(VARIABLE, None) is not None:
         _followed.set()
         threading.Thread(target=_wait, name="parent", daemon=True).start()

@@ -25,7 +25,7 @@ def _installed(group: str, path: tuple[str, ...]) -> Mapping[str, EntryPoint]:
 
 
 def package(group: str, what: str, name: str) -> ModuleType:
-    """Import the package that a name or a folder stands for.
+    """Import the package of an arena or a robot, by its installed name or its folder.
 
     Args:
         group: the entry-point group.
@@ -89,5 +89,5 @@ def package_of_folder(folder: Path) -> ModuleType:
 
 
 def folder_of(module: ModuleType) -> Path:
-    """Return the folder of a package."""
+    """Return the folder of an imported package."""
     return Path(next(iter(module.__path__)))

@@ -1,4 +1,4 @@
-"""Sets which work goes first when there are not enough processors for all."""
+"""Sets which threads and processes run first when there are not enough processors for all."""
 
 import contextlib
 import os
@@ -23,13 +23,13 @@ def go_first() -> bool:
 
 
 def take_turns() -> None:
-    """Give this thread the usual priority again."""
+    """Give this thread the usual priority again, after `go_first`."""
     if sys.platform == "linux":
         _schedule(os.SCHED_OTHER, 0)
 
 
 def _schedule(policy: int, priority: int) -> bool:
-    """Set how this thread is scheduled; return False if the system does not allow it."""
+    """Set the scheduling policy and priority of this thread; return False if not allowed."""
     if sys.platform != "linux":
         return False
     with contextlib.suppress(PermissionError):

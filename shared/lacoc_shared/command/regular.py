@@ -22,7 +22,7 @@ _FLAGS = (
 
 
 class Missing(UserError):
-    """There is no file of this name."""
+    """Raised when there is no file of this name in the folder."""
 
 
 def is_regular(path: Path) -> bool:
@@ -63,7 +63,7 @@ def read(folder: Path, *names: str, most_bytes: int) -> bytes:
 
 
 def names(folder: Path, *below: str) -> list[str]:
-    """List the names in a folder below a folder, in order; empty if there is no such folder.
+    """List the names of all files in a folder below `folder`, in order; none if it is missing.
 
     Raises:
         UserError: if it is a file or a link, or can't be read.
@@ -75,7 +75,7 @@ def names(folder: Path, *below: str) -> list[str]:
 
 
 def _inside(folder: Path, below: tuple[str, ...]) -> Path:
-    """Return a folder below a folder, after a check that no part of the way is a link."""
+    """Return a folder below `folder`, after a check that none of the folders between is a link."""
     path = folder
     for name in below:
         path = path / _plain(folder, name)

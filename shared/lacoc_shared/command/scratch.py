@@ -49,12 +49,12 @@ class Scratch:
         self.close()
 
     def close(self) -> None:
-        """Delete the folder."""
+        """Delete this temporary folder and all that is in it."""
         self._remove()
 
 
 def sweep(parent: Path) -> None:
-    """Remove the folders of programs that have ended; leave those that can't be removed.
+    """Remove the temporary folders of programs that have ended; leave those that can't be removed.
 
     Args:
         parent: the folder that they are in.
@@ -75,7 +75,7 @@ def _locked(folder: Path) -> BinaryIO:
 
 
 def _is_left(folder: Path) -> bool:
-    """Return whether this module made a folder, and the program that used it has ended.
+    """Return whether a folder was made by this module for a program that has ended since.
 
     A folder without the lock file was made by somebody else, whatever its name is.
     """

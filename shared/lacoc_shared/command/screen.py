@@ -89,7 +89,7 @@ def error(what: Phrase | str) -> None:
 
 
 def refused(mistakes: Sequence[Mistake]) -> None:
-    """Print how many mistakes were found, and a table of all of them (rules 2)."""
+    """Print how many mistakes were found in files, and a table of all of them."""
     error(say("command.mistakes", count=len(mistakes)))
     show(mistakes_table(mistakes), stderr)
 

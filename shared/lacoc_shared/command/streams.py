@@ -20,7 +20,7 @@ fail, as with a closed stream; messages to standard error are lost."""
 
 
 class OutputFailed(OSError):
-    """Standard output can't be written."""
+    """Raised when standard output can't be written."""
 
 
 def open_all() -> None:

@@ -6,7 +6,7 @@ import msgspec
 
 
 class Access(msgspec.Struct, frozen=True, kw_only=True):
-    """How a client reaches a court, and with which token."""
+    """How a client reaches a court, and the token that the client shows there."""
 
     court: str
     connect: str
@@ -30,13 +30,13 @@ class Access(msgspec.Struct, frozen=True, kw_only=True):
         return [self.connect, *self.others]
 
     def watching(self) -> Self:
-        """Return the access of a spectator to the same court."""
+        """Return how a spectator reaches the same court, without a token."""
         return msgspec.structs.replace(self, seat="", token="")
 
     def of_seat(self, seat: str, token: str) -> Self:
-        """Return the access of a seat at the same court."""
+        """Return how a player with this token reaches a seat at the same court."""
         return msgspec.structs.replace(self, seat=seat, token=token)
 
     def of_referee(self, token: str) -> Self:
-        """Return the access of a referee to the same court."""
+        """Return how a referee with this token reaches the same court."""
         return msgspec.structs.replace(self, seat="", token=token)

@@ -1,4 +1,4 @@
-"""Short codes that people type, such as that of a class or of an event."""
+"""Short codes that people type, such as the class code or the event code."""
 
 import hashlib
 import secrets

@@ -1,4 +1,4 @@
-"""The tables of a contest file that name machines: those of courts, and of the second machine."""
+"""The tables of a contest file about machines: one for each court, one for a second machine."""
 
 import itertools
 from pathlib import Path
@@ -51,7 +51,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     @property
     def host(self) -> str:
-        """Host name for clients.
+        """Host name at which clients reach the court.
 
         "" if the court listens at all addresses and `connect` has no host.
         """
@@ -64,7 +64,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
 
     def address(self, any_host: str = "127.0.0.1") -> str:
-        """Return the address to which a client connects.
+        """Return the address at which a client connects to the court.
 
         Args:
             any_host: the host to put into the address if the court listens at all addresses of its
@@ -73,7 +73,9 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
         return self.elsewhere or self._address_here(any_host)
 
     def stand_in(self, any_host: str = "127.0.0.1") -> str:
-        """Return the address for clients when the office's machine takes the place of the court's.
+        """Return the clients' address for the case that the office's machine runs this court.
+
+        This happens when the machine that usually runs the court is gone.
 
         Args:
             any_host: as in `address`.
@@ -92,7 +94,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
 
 class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The second machine: it copies everything that the office keeps, so that it can take over.
+    """The second machine: it copies all files of the office, so that the office can go on there.
 
     Copies are encrypted with a key that is made from a token, which itself is never sent.
     """
@@ -102,17 +104,17 @@ class Standby(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
     @property
     def listen(self) -> str:
-        """Address at which the office lets the second machine copy."""
+        """Address at which the office lets the second machine copy its files."""
         return _any_host(self.office)
 
 
 def wrong_in(table: str, error: UserError) -> UserError:
-    """Return an error with the name of a table of the contest file before each of its sentences."""
+    """Return an error that has the name of a contest file's table before each of its sentences."""
     return error.each(lambda wrong: say("contest.in", where=table, wrong=wrong))
 
 
 def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) -> ContestCourt:
-    """Read the table of a court.
+    """Read the table of a court in a contest file.
 
     Args:
         name: the court's name.
@@ -147,7 +149,7 @@ def read_court(name: str, table: Any, number: int, folder: Path, protocol: str) 
 
 
 def read_standby(table: Any) -> Standby:
-    """Read the table of the second machine.
+    """Read the table of the second machine in a contest file.
 
     Raises:
         UserError: if an entry is wrong.
@@ -185,7 +187,7 @@ def check_ports(courts: dict[str, ContestCourt], standby: Standby | None) -> Non
 
 
 def beside(folder: Path, name: str) -> str:
-    """Return the full path of a path in the contest file; return an installed name unchanged.
+    """Return the full path for a path in the contest file; leave an installed name unchanged.
 
     Args:
         folder: folder of the contest file.

@@ -41,7 +41,7 @@ MAIN = "main"
 
 
 class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
-    """A contest file, checked."""
+    """The content of a contest file, after all its entries were checked."""
 
     name: str = _NO_NAME
     recordings: Path = Path("recordings")
@@ -152,7 +152,7 @@ def picture_path(sheet: Path, files: str) -> Path | None:
 
 
 def facts_path(path: Path) -> Path:
-    """Return the path of the database with what happened in a contest, beside the contest file."""
+    """Return the path of the database with a contest's facts, beside the contest file."""
     return path.resolve().with_suffix(".db")
 
 
@@ -207,7 +207,7 @@ def loads(data: bytes, path: Path) -> ContestFile:
 
 
 def wrong_entries(path: Path, error: UserError) -> UserError:
-    """Return an error with the name of the contest file before each of its sentences."""
+    """Return an error that has the contest file's name before each of its sentences."""
     return error.each(lambda wrong: say("contest.wrong", file=str(path), wrong=wrong))
 
 
@@ -310,7 +310,7 @@ def _public(general: _General, folder: Path) -> PublicAddress:
 
 
 def _check_time(entries: dict[str, Any]) -> None:
-    """Check the time in [contest]; remove it from the entries if it is wrong."""
+    """Check the time when entries close, in the table [contest]; remove it if it is wrong."""
     close = entries.get("entries_close")
     try:
         msgspec.convert(close, datetime | None)

@@ -40,7 +40,7 @@ class Link(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def text(self) -> str:
-        """The link as a text."""
+        """The link as the text that a person gets."""
         secret = {"token": self.token, "authority": self.authority}
         end = "&".join(f"{name}={value}" for name, value in secret.items() if value)
         query = f"?court={quote(self.court)}" if self.court else ""

@@ -74,7 +74,7 @@ def _skeleton(name: str) -> str:
 
 @cache
 def _prototypes() -> dict[str, str]:
-    """Return, for characters that look alike, the character that stands for all of them."""
+    """Return for each character that looks like others the one that stands for all of them."""
     from confusable_homoglyphs.confusables import confusables_data  # a megabyte; few need it
 
     # The table has pairs in both directions. A character with one partner has that one's form; of

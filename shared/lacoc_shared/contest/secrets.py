@@ -54,10 +54,7 @@ class Secrets:
 
     @property
     def standby(self) -> str:
-        """Token from which a key is made.
-
-        With this key the second machine's copies are encrypted.
-        """
+        """Token from which the key is made that encrypts the copies for the second machine."""
         return self._of(_STANDBY)
 
     @property
@@ -96,7 +93,7 @@ class Secrets:
 
     @property
     def staff_names(self) -> tuple[str, ...]:
-        """The names of the staff who have a token."""
+        """The names of those members of the staff who have a token."""
         names = (name for name in self._read() if name.startswith(_STAFF))
         return tuple(sorted(name.removeprefix(_STAFF) for name in names))
 
@@ -105,7 +102,7 @@ class Secrets:
         self._forget({f"{_TEAM}{name}" for name in teams})
 
     def forget_staff(self, name: str) -> None:
-        """Forget the token of a member of the staff."""
+        """Forget the token of a member of the staff, so that the link is not valid any more."""
         self._forget({f"{_STAFF}{name}"})
 
     def _owner(self, kind: str, token: str) -> str | None:
@@ -118,7 +115,9 @@ class Secrets:
         self._change(lambda there: {name: one for name, one in there.items() if name not in gone})
 
     def check_copied(self, *courts: str) -> None:
-        """Check that this file was copied from the office: on another machine no token may be made.
+        """Check that this file is a copy of the office's file: it has all tokens that it needs.
+
+        On another machine than the office's, no token may be made.
 
         Args:
             courts: courts whose referees have tokens.
@@ -138,7 +137,7 @@ class Secrets:
         return tokens[name]
 
     def _read(self) -> dict[str, str]:
-        """Return all tokens by name, as they are in the file now."""
+        """Return all tokens by name, as they are in the file of the contest's tokens now."""
         with self._lock:
             try:
                 now = _state(self._path)
@@ -170,7 +169,7 @@ class Secrets:
 
 @contextmanager
 def _alone(path: Path) -> Iterator[None]:
-    """Keep other programs from changing the tokens until the block ends."""
+    """Keep other programs from changing the tokens until the `with` block ends."""
     with path.open("ab") as lock:
         end_s = time.monotonic() + _WAIT_S
         while not hold(lock):
@@ -181,7 +180,7 @@ def _alone(path: Path) -> Iterator[None]:
 
 
 def _state(path: Path) -> tuple[int, int] | None:
-    """Return numbers that change each time the file is replaced; None: there is no file."""
+    """Return two numbers that change when the file is replaced; None: there is no file."""
     try:
         found = path.stat()
     except FileNotFoundError:

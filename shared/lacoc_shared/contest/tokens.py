@@ -29,8 +29,8 @@ def lasting_hash(token: str) -> str:
 
 
 def digest(token: str) -> bytes:
-    """Return a digest of a token, by which the token is found among others.
+    """Return a digest of a token, to look the token up in a set of digests.
 
-    The time that it takes to compare digests reveals nothing about the token.
+    The time that the look-up takes reveals nothing about the token.
     """
     return hashlib.blake2b(token.encode("utf-8", "surrogatepass"), digest_size=16).digest()

@@ -45,7 +45,7 @@ class BadToml(ValueError):
 
     @property
     def phrase(self) -> Phrase:
-        """Reason, line and remedy as one phrase, for use in a sentence.
+        """What is wrong in the TOML text, in which line, and what should be there, as a phrase.
 
         The text of a line with a token is left out, because the reader of the message may not see
         the token.
@@ -110,7 +110,7 @@ def _row_of_long_number(text: str) -> int | None:
 
 
 def _check_values(table: dict[str, Any], any_integers: bool) -> None:
-    """Check every value, without recursion.
+    """Check each value of a parsed TOML file, without recursion.
 
     Raises:
         BadToml: if a value is nested too deep or too large.

@@ -29,7 +29,7 @@ _KINDS = {
 
 
 def convert(value: Any, kind: type[T], where: str) -> T:
-    """Convert a value of a contest file.
+    """Convert a value of a contest file to its type, and check it.
 
     Args:
         value: what was read from TOML.
@@ -65,7 +65,7 @@ def convert(value: Any, kind: type[T], where: str) -> T:
 
 
 def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[str, Phrase | str]:
-    """Return which entry is wrong, and what is expected there.
+    """Return which entry of a table is wrong, and what is expected there.
 
     Args:
         error: raised by `msgspec.convert` for a table read from TOML.
@@ -84,7 +84,12 @@ def place_and_words(error: msgspec.ValidationError, kind: Any = None) -> tuple[s
 
 
 def _choices(kind: Any, place: str) -> list[str]:
-    """Return the words that are possible for the entry at a place; none if they are not known."""
+    """Return the words that an entry may have as its value; an empty list if they are not known.
+
+    Args:
+        kind: the type of the whole table.
+        place: place of the entry in the table, such as "match.start".
+    """
     for name in place.split("."):
         fields = get_type_hints(kind) if isinstance(kind, type) else {}
         kind = fields.get(name)

@@ -1,4 +1,4 @@
-"""The cells of a gait file, by row and column (rules 2, workshop Fig. 4-1 and Fig. 4-2).
+"""The cells of a gait file, by row and column, as the workshop's figures 4-1 and 4-2 show them.
 
 Text files and workbooks hold the same table: both are written from the cells made here, and
 `reader` reads both once they are split into cells. Files have degrees, LACOC has radians.
@@ -43,14 +43,14 @@ _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a file: its number, counted from 1, and its cells."""
+    """One row of a gait file: its number, counted from 1, and its cells."""
 
     number: int
     cells: list[str]
 
 
 def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """Return the cells of workshop Fig. 4-1: number of postures, postures [deg], three legend rows.
+    """Return the cells of a file of postures (level A): their number, each posture [deg], a legend.
 
     Raises:
         ValueError: if the table is not for a robot with these legs.
@@ -69,7 +69,7 @@ def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | f
 
 
 def locomotion_cells(table: LocomotionTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """Return the cells of workshop Fig. 4-2: number of keys, then the postures of each key [deg].
+    """Return the cells of a file of locomotion (level B): number of keys, postures of each [deg].
 
     Raises:
         ValueError: if the table is not for a robot with these legs.
@@ -93,7 +93,7 @@ def leg_labels(legs: int) -> tuple[str, ...]:
 
 
 def degrees_of(angle_rad: float) -> float:
-    """Return the shortest number of degrees that, when it is read, gives exactly this angle.
+    """Return the shortest number of degrees from which exactly this angle is read.
 
     For an angle that came from a file there always is such a number. For another angle, return the
     nearest number.
@@ -125,7 +125,7 @@ def number_of(cell: str) -> float | None:
 
 
 def shown(cell: str) -> Phrase | str:
-    """Quote a cell for an error message: short, and safe to print."""
+    """Return the text of a cell for an error message: short, and safe to print."""
     if not cell:
         return say("gait.nothing")
     return quoted(cell)
@@ -138,7 +138,7 @@ def quoted(cell: str) -> str:
 
 
 def angle_of(value_deg: float) -> float:
-    """Convert degrees to an angle [rad]."""
+    """Convert an angle from degrees to radians, as a file's angles are read."""
     return math.radians(value_deg) + 0.0  # turns -0.0 into 0.0
 
 

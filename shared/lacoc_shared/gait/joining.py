@@ -9,7 +9,7 @@ from lacoc_shared.words import say
 
 
 def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]]) -> LocomotionTable:
-    """Join postures into sequences.
+    """Join postures (level A) into the sequences of a locomotion table (level B).
 
     Args:
         table: the postures.

@@ -26,7 +26,7 @@ class _ScriptStep(NamedTuple):
 
 
 class KeyScript:
-    """Holds the keys of a script, and returns each key when it is due."""
+    """Holds the keys of a script, and returns each key when its time has come."""
 
     def __init__(self) -> None:
         self._steps: deque[_ScriptStep] = deque()
@@ -57,7 +57,7 @@ class KeyScript:
         return None
 
     def due(self, playing_s: float, playing: bool) -> list[str]:
-        """Return the keys that are due, with at most one among them that moves the robot.
+        """Return the keys whose time has come; at most one of them moves the robot.
 
         Args:
             playing_s: how long the match has been played [s].
@@ -79,7 +79,7 @@ class KeyScript:
 
     @property
     def empty(self) -> bool:
-        """True if no key is waiting."""
+        """Whether all keys of the script so far have been returned."""
         return not self._steps
 
 

@@ -1,4 +1,7 @@
-"""Finds the legend rows of Loco-data (workshop Fig. 4-1) and compares them with the columns."""
+"""Finds the legend in a file of postures: the rows that name the joint of each column.
+
+Compares the legend with the order of the columns.
+"""
 
 import re
 from collections.abc import Sequence
@@ -15,7 +18,7 @@ _LABELS = (_IDS_LABEL, "position")
 
 
 def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
-    """Split the rows of Loco-data into postures, legend, and the rows below the legend.
+    """Split the rows of a file of postures into postures, legend, and rows below the legend.
 
     The legend begins below all rows with a key, at the first row that can belong to a legend. From
     there on no row is a posture: there are only legend rows, remarks and empty rows of a sheet.
@@ -35,7 +38,7 @@ def find_legend(rows: Sequence[Row]) -> tuple[list[Row], list[Row], list[Row]]:
 
 
 def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
-    """Return a remark if a label in a legend row does not fit its column.
+    """Return a remark if a label in a row of the legend names another joint than its column has.
 
     Angles are read by the order of the columns, not by the legend.
 
@@ -76,7 +79,7 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
 
 
 def without_zeros(cells: Sequence[str]) -> list[str]:
-    """Replace each 0 by an empty cell, and trim the row.
+    """Return the row with an empty cell for each 0, and without empty cells at its end.
 
     A sheet shows 0 where a formula refers to an empty cell.
     """

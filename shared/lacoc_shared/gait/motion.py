@@ -7,7 +7,7 @@ _ROUNDING = 1 + 1e-9
 
 
 def toward(angles: Posture, target: Posture, step_rad: float) -> Posture:
-    """Move every angle toward its target by at most one step.
+    """Move each commanded angle toward its target by at most one step.
 
     Once all angles have arrived, `target` itself is returned.
 

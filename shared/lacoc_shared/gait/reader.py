@@ -1,4 +1,4 @@
-"""Reads the cells of a gait file, and lists every mistake in them (rules 2)."""
+"""Makes a gait from the cells of a gait file, and lists every mistake in them."""
 
 import math
 import re
@@ -58,7 +58,7 @@ def read_cells(
     headers: Phrase = ANY_HEADER,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read a gait; its first row shows which kind it is.
+    """Make a gait from the cells of a gait file; the first row shows of which kind.
 
     Args:
         rows: the rows in order; blank rows, and empty cells at the end of a row, are skipped.
@@ -92,7 +92,7 @@ def _largest_deg(table: PostureTable | LocomotionTable) -> float:
 
 
 class _TableReader:
-    """Reads one file and collects its mistakes."""
+    """Reads the cells of one gait file, and collects the mistakes in them."""
 
     def __init__(self, file: str, legs: Legs, range_deg: Range, headers: Phrase) -> None:
         self._file = file
@@ -156,7 +156,7 @@ class _TableReader:
         )
 
     def _postures(self, rows: list[Row]) -> PostureTable:
-        """Read Loco-data: the number of postures, a row for each, and perhaps legend rows."""
+        """Read postures (level A): their number, a row for each, and perhaps a legend."""
         body = list(rows)
         announced = None
         if _POSTURES_HEADER.fullmatch(rows[0].cells[0]):
@@ -209,7 +209,7 @@ class _TableReader:
         return PostureTable(postures)
 
     def _locomotion(self, rows: list[Row]) -> LocomotionTable:
-        """Read LocoTra-data: the number of keys, then for each key a count and its postures."""
+        """Read locomotion (level B): the number of keys, then for each a count and its postures."""
         header, *body = rows
         keys = self._count(header, 1, MAX_KEYS, say("gait.number-of-keys"))
         groups: list[tuple[Row | None, list[Row]]] = []
@@ -270,7 +270,7 @@ class _TableReader:
         return int(value)
 
     def _joints(self, rows: Sequence[Row], first: int) -> int:
-        """Return how many angles a row should have.
+        """Return how many angles each row of the file should have.
 
         If a robot is given, return the robot's number of joints. But if no row has so many angles,
         and some rows fit another robot, the file is for another robot: note this as one mistake.

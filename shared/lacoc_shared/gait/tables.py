@@ -1,4 +1,4 @@
-"""Gaits: the postures that each digit key commands (workshop 3-2, rules 2 and 3).
+"""Gaits: the postures that each digit key commands.
 
 Angles are in radians, in the order of the joint ids of rules 1: id = leg + legs *
 level, with the legs clockwise from the right front and the levels root, 1st, 2nd.
@@ -18,7 +18,7 @@ LEVEL_NAMES = ("Root", "1st", "2nd")
 
 
 class Level(IntEnum):
-    """The two levels of control (workshop 3-2)."""
+    """The two levels of control: what a digit key commands."""
 
     POSTURE = 0
     """(A) A digit commands one posture."""
@@ -27,7 +27,7 @@ class Level(IntEnum):
 
 
 class PostureTable(msgspec.Struct, frozen=True):
-    """A Loco-data file: at most one posture for each digit key (level A)."""
+    """The content of a file of postures (Loco-data): one for each digit key (level A)."""
 
     postures: dict[int, Posture]
     """Digit -> angles [rad]; 1 to 10 entries, all of one length."""
@@ -39,7 +39,10 @@ class PostureTable(msgspec.Struct, frozen=True):
 
 
 class LocomotionTable(msgspec.Struct, frozen=True):
-    """A LocoTra-data file: a sequence of postures for each digit key from 0 on (level B)."""
+    """The content of a file of locomotion (LocoTra-data): a sequence of postures for each key.
+
+    The keys are the digits from 0 on, at level B.
+    """
 
     sequences: tuple[tuple[Posture, ...], ...]
     """Index = digit; 1 to 10 sequences of 1 to 100 postures."""
@@ -51,7 +54,7 @@ class LocomotionTable(msgspec.Struct, frozen=True):
 
 
 class Gait(msgspec.Struct, frozen=True):
-    """Everything that the keys of a seat can do: one table or both."""
+    """The gait of a robot: what the keys of its seat do, as one table or both."""
 
     postures: PostureTable | None = None
     locomotion: LocomotionTable | None = None
@@ -90,7 +93,7 @@ forward, [3] turn right."""
 
 
 def to_locomotion(table: PostureTable, keys: tuple[tuple[int, ...], ...]) -> LocomotionTable:
-    """Join postures into sequences.
+    """Join postures (level A) into the sequences of a locomotion table (level B).
 
     Args:
         table: the postures.
@@ -105,7 +108,7 @@ def to_locomotion(table: PostureTable, keys: tuple[tuple[int, ...], ...]) -> Loc
 
 
 def to_postures(table: LocomotionTable) -> PostureTable:
-    """Number the different postures of a locomotion table in order of first use.
+    """Make a posture table of a locomotion table: its different postures, in order of first use.
 
     Raises:
         ValueError: if there are more than ten different postures.

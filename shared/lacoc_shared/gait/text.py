@@ -1,4 +1,4 @@
-"""Gaits as text: Loco-data.txt and LocoTra-data*.txt (workshop 4-1, 4-2, rules 2)."""
+"""Gait files that are text: postures (Loco-data.txt) and locomotion (LocoTra-data*.txt)."""
 
 import codecs
 import re
@@ -43,7 +43,9 @@ def read_gait(
     range_deg: Range = RANGE_DEG,
     notes: list[Phrase] | None = None,
 ) -> PostureTable | LocomotionTable:
-    """Read Loco-data or LocoTra-data text; the first cell shows which of the two it is.
+    """Read a gait file that is text: postures (Loco-data) or locomotion (LocoTra-data).
+
+    The first cell of the file shows which of the two it is.
 
     Args:
         data: the file, at most 32 KiB, in UTF-8, UTF-16 or Shift-JIS.
@@ -74,7 +76,7 @@ def read_gait(
 
 
 def write_gait(table: PostureTable | LocomotionTable, legs: Sequence[str]) -> bytes:
-    """Write a table as Loco-data or LocoTra-data text: UTF-8, tabs, one line feed per row.
+    """Write a gait file that is text: UTF-8, tabs between cells, a line feed after each row.
 
     Args:
         table: the gait; angles in radians, written as the shortest exact degrees.

@@ -91,7 +91,7 @@ class Frame(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Command(msgspec.Struct, frozen=True, array_like=True):
-    """A seat's newest key; the controller repeats it 10 times a second with the same number."""
+    """A seat's newest key; the controller sends it 10 times a second, with the same number."""
 
     session: int
     """Number that the court gave in its reply to the join."""
@@ -110,14 +110,14 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
 
 
 class SentFile(msgspec.Struct, frozen=True):
-    """A file as a contestant's program sends it."""
+    """A file that a contestant's program sends: its name and its bytes."""
 
     name: str
     data: bytes
 
 
 class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request for a seat."""
+    """A request of a controller to take a seat."""
 
     protocol: int
     token: str
@@ -133,7 +133,7 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):
-    """The reply to a join that succeeded."""
+    """The reply to a controller that has taken a seat."""
 
     session: int
     secret: bytes
@@ -156,12 +156,12 @@ class SeatRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers, after `seq`."""
+        """The numbers of this request that its seal proves, besides `session` and `seq`."""
         return (int(self.ready),)
 
 
 class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fields=True):
-    """A key of a try-out."""
+    """A key that is pressed in a try-out."""
 
     tick: Annotated[int, msgspec.Meta(ge=0, lt=TRY_OUT_TICKS)]
     """Tick of the try-out at which the key is pressed, from 0."""
@@ -191,13 +191,13 @@ class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
     @property
     def sealed(self) -> tuple[int, ...]:
-        """The numbers that the seal covers, after `seq`."""
+        """The numbers of this request that its seal proves, besides `session` and `seq`."""
         pressed = [number for key in self.keys for number in (key.tick, key.level, key.key)]
         return (int(self.drawn), self.first, self.until, *pressed)
 
 
 class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
-    """How a robot walks alone on the field of its match, as pictures."""
+    """How a robot walked alone in a try-out, on the field of its match, as pictures."""
 
     scene: bytes
     """Hash of the scene with the field and only this robot, 8 bytes."""
@@ -213,14 +213,14 @@ class TryOutReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Done(msgspec.Struct, frozen=True):
-    """The reply to a request that succeeded."""
+    """The reply to a request that the court has carried out."""
 
     said: Phrase | None = None
     """A remark for the sender (`note.*`)."""
 
 
 class Refusal(msgspec.Struct, frozen=True):
-    """The reply to a request that was refused; sent as an error."""
+    """The court's reply to a request that it refused; sent as an error."""
 
     why: Phrase
     """Why the request was refused, as a whole sentence; its code says which kind of refusal it
@@ -237,7 +237,7 @@ class Enter(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A decision of a referee."""
+    """A referee's request to make a decision."""
 
     token: str
     by: str
@@ -248,7 +248,7 @@ class DecisionRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
 
 
 class DecisionReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The effect of a decision; sent when the decision is on disk."""
+    """The court's reply to a decision: its effect. It is sent when the decision is on disk."""
 
     beat: int
     event: int | None = None
@@ -265,7 +265,7 @@ Outcome = Done | DecisionReply | Refusal
 
 
 class Event(msgspec.Struct, frozen=True, kw_only=True):
-    """Something that happened; numbered, and never lost."""
+    """Something that happened in a match; events are numbered, so that a lost one is noticed."""
 
     number: int
     """Number of the event in its match, from 1."""
@@ -314,7 +314,7 @@ class Outlook(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """A seat: its team, look, robot and keys."""
+    """A seat in the sheet of a match: its team, look, robot and keys."""
 
     id: str
     """Id of the seat in the arena, such as "left"."""
@@ -335,7 +335,7 @@ class SheetSeat(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MarkerInfo(msgspec.Struct, frozen=True, kw_only=True):
-    """A disc, corner or flag of the board."""
+    """A disc, corner or flag of the board: its name and place."""
 
     name: str
     kind: str
@@ -379,7 +379,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
-    """A body of the scene; `Frame.poses` has the pose of a robot's root body and joint angles."""
+    """A body of the scene. `Frame.poses` has the pose of a robot's root body, and joint angles."""
 
     name: str
     parent: int
@@ -398,7 +398,7 @@ class SceneBody(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SceneGeom(msgspec.Struct, frozen=True, kw_only=True):
-    """A shape on a body."""
+    """A shape of a body of the scene."""
 
     body: int
     type: str
@@ -424,7 +424,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Gains(msgspec.Struct, frozen=True, kw_only=True):
-    """What a robot would gain next from its present place."""
+    """Which points a robot could gain next, from the place where it is now."""
 
     said: Phrase | None = None
     """For the robot's player: where the robot comes from and what it can do next (`gains.*`)."""
@@ -500,7 +500,7 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of the court; sent twice a second, and at once when `gains` changes."""
+    """How a court and its links work now; sent twice a second, and at once when `gains` changes."""
 
     match: int
     beat: int

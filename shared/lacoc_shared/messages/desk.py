@@ -35,7 +35,7 @@ _Text = Annotated[str, msgspec.Meta(max_length=500)]
 class TeamFiles(
     msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """The files that a team hands in; None for a file that it does not hand in."""
+    """The files that a team hands in to the office; None for a file that it leaves out."""
 
     robot: SentFile | None = None
     """Robot file; None: the contest's robot."""
@@ -63,14 +63,14 @@ class DeskRequest(
 
 
 class LookAtEvent(DeskRequest, frozen=True, kw_only=True, tag="look"):
-    """Ask for the facts about the event that need no secret."""
+    """Ask for what everybody may know about the event."""
 
 
 # With the event code
 
 
 class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
-    """Apply to take part with a team; the organiser decides."""
+    """Apply to take part in the contest with a team; the organiser decides."""
 
     team: _Name
     files: TeamFiles
@@ -90,7 +90,7 @@ class ChangeFiles(DeskRequest, frozen=True, kw_only=True, tag="change"):
 
 
 class Own(DeskRequest, frozen=True, kw_only=True, tag="own"):
-    """Ask for the state of the team's own entry."""
+    """Ask for the state of the entry of the team that has this token."""
 
 
 # With the token of a court's referee
@@ -126,21 +126,21 @@ class Approve(DeskRequest, frozen=True, kw_only=True, tag="approve"):
 
 
 class Decline(DeskRequest, frozen=True, kw_only=True, tag="decline"):
-    """Refuse applications, and forget them."""
+    """Refuse the applications of teams, and forget them."""
 
     teams: tuple[_Name, ...]
 
 
 class NewCode(DeskRequest, frozen=True, kw_only=True, tag="new_code"):
-    """Make another event code; from then on nobody can apply with the old one."""
+    """Make another event code; from then on no team can apply with the old one."""
 
 
 class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
-    """Close entries; the office then draws the first stage and calls the first games."""
+    """Let no more teams enter; the office then draws the first stage and calls its first games."""
 
 
 class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):
-    """Make the draw of the stage that waits for the organiser, as the page shows it."""
+    """Make the draw of the stage that waits for the organiser's draw, as the page shows it."""
 
     stage: _Name
     entries: tuple[_Name, ...]
@@ -174,7 +174,7 @@ class Substitute(DeskRequest, frozen=True, kw_only=True, tag="substitute"):
 
 
 class PauseContest(DeskRequest, frozen=True, kw_only=True, tag="pause"):
-    """Call no game until the contest goes on."""
+    """Pause the contest: the office gives no game to a court until the contest goes on."""
 
     until_ms: Annotated[int, msgspec.Meta(ge=0, le=2**53)] = 0
     """Time at which the contest goes on by itself, in milliseconds since 1970 (UTC); 0: it goes on
@@ -183,18 +183,18 @@ class PauseContest(DeskRequest, frozen=True, kw_only=True, tag="pause"):
 
 
 class ResumeContest(DeskRequest, frozen=True, kw_only=True, tag="resume"):
-    """Let the contest go on."""
+    """Let a paused contest go on."""
 
 
 class Shift(DeskRequest, frozen=True, kw_only=True, tag="shift"):
-    """Postpone by `by_ms` everything that has not happened yet."""
+    """Postpone by `by_ms` all matches and all other times of the contest that are still to come."""
 
     by_ms: Annotated[int, msgspec.Meta(ge=60_000, le=86_400_000)]
     reason: _Text = ""
 
 
 class Unshift(DeskRequest, frozen=True, kw_only=True, tag="unshift"):
-    """Take back the newest shift."""
+    """Take back the newest shift, which postponed what was still to come."""
 
     shift: _Name
     """Id of the shift, as the page shows it. So the same request, sent twice, takes back only one
@@ -202,17 +202,17 @@ class Unshift(DeskRequest, frozen=True, kw_only=True, tag="unshift"):
 
 
 class Announce(DeskRequest, frozen=True, kw_only=True, tag="announce"):
-    """Show a line of text on all pages; "" removes it."""
+    """Show a line of text of the organiser on all pages; "" removes it."""
 
     text: Annotated[str, msgspec.Meta(max_length=200)]
 
 
 class Publish(DeskRequest, frozen=True, kw_only=True, tag="publish"):
-    """Publish the contest: write its folder, which the gateway serves."""
+    """Publish the contest: write the folder with its results, which the gateway serves."""
 
 
 class Staff(DeskRequest, frozen=True, kw_only=True, tag="staff"):
-    """Give a member of the staff a link to this page, or take it away.
+    """Give a member of the staff a link to the organiser's page, or take the link away.
 
     Only the organiser may do so.
     """
@@ -232,14 +232,18 @@ class TakeOut(DeskRequest, frozen=True, kw_only=True, tag="take_out"):
 
 
 class SeePicture(DeskRequest, frozen=True, kw_only=True, tag="picture"):
-    """Ask for the newest picture of a team, or delete it."""
+    """Ask for the newest picture that a team handed in, or delete it."""
 
     team: _Name
     remove: bool = False
 
 
 class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
-    """Make a decision about a match."""
+    """Make an organiser's decision about a match or one of its games.
+
+    A game is played again (`replay`), its result is given (`result`), the match is void (`void`),
+    or a team did not come (`no-show`).
+    """
 
     kind: Literal["replay", "result", "void", "no-show"]
     pairing: _Name
@@ -255,7 +259,7 @@ class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
 
 
 class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
-    """Move a match to another court or time; only the newest move of a match counts."""
+    """Plan a match for another court or time; of several such plans only the newest counts."""
 
     pairing: _Name
     court: _Name = ""
@@ -267,7 +271,7 @@ class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
 
 
 class Tokens(DeskRequest, frozen=True, kw_only=True, tag="tokens"):
-    """Ask for the tokens of all teams of people and of all referees, to give them their links."""
+    """Ask for the tokens of all people who play or referee, to make links of them."""
 
 
 OfStaff = (
@@ -314,7 +318,7 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of a team's own entry."""
+    """The state of a team's own entry, as the answer to the team."""
 
     event: EventInfo
     team: str
@@ -332,7 +336,7 @@ class OwnEntry(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
-    """A team on the organiser's page."""
+    """A team, as the organiser's page lists it."""
 
     team: str
     state: Literal["refused", "waits", "late", "in", "withdrawn", "disqualified"]
@@ -358,7 +362,7 @@ class TeamRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
-    """A court on the organiser's page."""
+    """A court, as the organiser's page lists it."""
 
     court: str
     here: bool
@@ -366,7 +370,7 @@ class CourtRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MatchMove(msgspec.Struct, frozen=True):
-    """How a match was moved; see `Move`."""
+    """To which court and time the organiser has moved a match; see `Move`."""
 
     court: str
     before: str
@@ -400,7 +404,7 @@ class Slot(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
-    """A stage that waits for the organiser's draw."""
+    """A stage whose draw the organiser must make now."""
 
     stage: str
     title: Phrase
@@ -420,14 +424,14 @@ class ToDraw(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Undrawable(msgspec.Struct, frozen=True, kw_only=True):
-    """A stage whose draw can be taken back."""
+    """A stage whose draw can still be taken back."""
 
     stage: str
     title: Phrase
 
 
 class DayState(msgspec.Struct, frozen=True, kw_only=True):
-    """Whether the office gives games to courts now; if not, until when and why."""
+    """Whether the office gives games to courts now; if not, until when and why not."""
 
     paused: bool
     """Whether no game is called until the organiser says so."""
@@ -438,7 +442,7 @@ class DayState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ShiftState(msgspec.Struct, frozen=True, kw_only=True):
-    """A shift that can be taken back."""
+    """A shift that can be taken back: its id, and how long it postponed."""
 
     shift: str
     """Id of the shift."""
@@ -481,21 +485,21 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Overviewed(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to `Overview`."""
+    """The answer to `Overview`: what the organiser's page shows."""
 
     view: OfficeView | None
     """The view; None: the page has the newest one already."""
 
 
 class Effect(msgspec.Struct, frozen=True, kw_only=True):
-    """What a decision has changed, or would change."""
+    """What an organiser's decision has changed, or would change."""
 
     lines: tuple[Phrase, ...]
     done: bool
 
 
 class CourtPlan(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to `CourtDay`."""
+    """The answer to `CourtDay`: what comes next at a court."""
 
     coming: tuple[Slot, ...]
     """The games that are probably played next at the court, by time, without the game that is

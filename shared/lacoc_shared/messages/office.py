@@ -63,7 +63,10 @@ class AssignedSeat(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Assigned(msgspec.Struct, frozen=True, kw_only=True):
-    """What the office assigned, as the match's setup keeps it for a restarted court."""
+    """The match that the office assigned to a court, as the match's record keeps it.
+
+    So a restarted court finds it again.
+    """
 
     call: str
     """Id of the call, which is unique in the contest. "": the office gave no call. Then the court
@@ -89,7 +92,7 @@ class Assigned(msgspec.Struct, frozen=True, kw_only=True):
         return any(not seat.team for seat in self.seats)
 
     def seat(self, seat: str) -> AssignedSeat | None:
-        """Return a seat by its id; None if nobody may sit there."""
+        """Return a seat of the assigned match by its id; None if nobody may sit there."""
         return next((one for one in self.seats if one.id == seat), None)
 
 
@@ -98,7 +101,7 @@ WAITING = Assigned(call="", fixture=say("fixture.waiting"), seats=())
 
 
 def open_match(tokens: Mapping[str, Collection[str]], call: str = "") -> Assigned:
-    """Return an assignment of an open match.
+    """Return the assignment of an open match, in which people with tokens may sit down.
 
     Args:
         tokens: salted hashes of the tokens that open each seat, by the seat's name.
@@ -113,7 +116,7 @@ EARLIER_OFFICE = say("refused.earlier-office")
 
 
 class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The fields that all requests of an office have."""
+    """The fields that all requests of an office to a court have."""
 
     token: str
     """The office's token."""
@@ -123,7 +126,7 @@ class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fi
 
 
 class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: play this match as the next one."""
+    """A request of the office to a court: play this match as the next one."""
 
     call: Call
     fixture: Phrase
@@ -143,7 +146,7 @@ class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: close this match, so that it is void."""
+    """A request of the office to a court: close this match, so that it is void."""
 
     call: Call
     begun: bool = False
@@ -153,7 +156,7 @@ class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: send the next part of a match's record.
+    """A request of the office to a court: send the next part of a match's record.
 
     The office sends this again and again, and so gets a copy of what a court on another machine
     records.
@@ -165,7 +168,7 @@ class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class Copied(msgspec.Struct, frozen=True, kw_only=True):
-    """A part of a record: the answer to `Copy`."""
+    """The next part of a match's record: the answer to `Copy`."""
 
     file: str = ""
     """Name of the file; "": the office has everything that is recorded so far."""
@@ -177,7 +180,7 @@ class Copied(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Retire(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: end your process, because this court goes on at another machine."""
+    """A request of the office to a court: end, because this court goes on at another machine."""
 
 
 class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
@@ -218,7 +221,7 @@ class Whereabouts(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request of the office: here is where all teams and open seats are.
+    """A message of the office to a court: where each team plays, and where each open seat is.
 
     It replaces what the office told before.
     """
@@ -229,7 +232,7 @@ class Tell(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
 
 class Where(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A request to a court: where does the team with this token play?"""
+    """A question to a court: where does the team with this token play?"""
 
     token: str
     """The token of a team or of an open seat."""

@@ -1,1 +1,1 @@
-"""The Zenoh session, its configuration, addresses and certificates."""
+"""Connections over Zenoh: sessions, their configuration, addresses and certificates."""

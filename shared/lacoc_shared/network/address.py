@@ -55,19 +55,19 @@ def host(one: str) -> str:
 
 
 def collisions(these: Sequence[str], others: Sequence[str]) -> list[str]:
-    """Return those of `these` that collide with one of `others`: no machine can listen at both."""
+    """Return those of `these` addresses at which a machine can't listen while it uses `others`."""
     return [one for one in these if any(_collide(_split(one), _split(other)) for other in others)]
 
 
 def free_beside(one: str, taken: Sequence[str]) -> str:
-    """Return an address with the first port, from 7447 on, that no address in `taken` has."""
+    """Return address `one` with another port: the first from 7447 on that `taken` does not have."""
     ports = {_split(other)[1] for other in taken}
     free = next(port for port in itertools.count(DEFAULT_PORT) if port not in ports)
     return f"{one.rpartition(':')[0]}:{free}"
 
 
 def check_protocols(endpoints: Sequence[str], *, encrypted: bool) -> None:
-    """Check the protocols: a court with a certificate listens with TLS only, others without it.
+    """Check the protocols of a court's addresses: all TLS if it has a certificate, else none.
 
     Raises:
         UserError: if an address is wrong.
@@ -81,10 +81,7 @@ def check_protocols(endpoints: Sequence[str], *, encrypted: bool) -> None:
 
 
 def why_not_known(endpoints: Sequence[str]) -> Phrase | None:
-    """Return which host name is unknown, if all of these addresses have unknown names.
-
-    Else None.
-    """
+    """Return that the addresses' host names are unknown; None if any of them is known."""
     unknown = [host for host, port in map(_split, endpoints) if not _resolves(host, port)]
     if unknown and len(unknown) == len(endpoints):
         return say("connect.name-unknown", name=unknown[0])
@@ -106,7 +103,7 @@ def why_not_connected(endpoints: Sequence[str], authority: str = "") -> Phrase:
 def is_open(one: str, timeout_s: float = 0.5) -> bool:
     """Return whether a program listens at a complete address.
 
-    Much faster than to open a session.
+    This check is much faster than to open a session.
     """
     try:
         with socket.create_connection(_split(one), timeout=timeout_s):
@@ -249,10 +246,7 @@ def is_own(name: str) -> bool:
 
 
 def _sender_to(number: str) -> str:
-    """Return the address from which this machine sends to an IP address.
-
-    "" if it can't reach it.
-    """
+    """Return this machine's own IP address for messages to `number`; "": no way leads there."""
     family = socket.AF_INET6 if ":" in number else socket.AF_INET
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         try:

@@ -11,7 +11,7 @@ class Allowance:
         self._last_s = 0.0
 
     def left(self, now_s: float) -> int:
-        """Return how many messages may pass now."""
+        """Return how many more messages may pass now."""
         grown = max(0.0, now_s - self._last_s) * self._rate_hz
         self._left = min(self._burst, self._left + grown)
         self._last_s = now_s

@@ -13,7 +13,7 @@ from lacoc_shared.words import say
 
 
 class Pair(NamedTuple):
-    """The files of a certificate and its key (PEM)."""
+    """The two files of a certificate and its private key (PEM)."""
 
     certificate: Path
     """The certificate file, with the certificates between it and an authority."""
@@ -21,7 +21,7 @@ class Pair(NamedTuple):
 
 
 class Certificate:
-    """A certificate and its key as a TLS context, which can read renewed files.
+    """A certificate and its key, as a TLS context that can read renewed files.
 
     Args:
         pair: the files of certificate and key.
@@ -37,7 +37,7 @@ class Certificate:
         self._load(self.context)
 
     def renew(self) -> bool:
-        """Read the files again if they have changed; return whether they were read.
+        """Read certificate and key again if they have changed; return whether they were read.
 
         Open connections go on; new connections get the new certificate.
 
@@ -65,7 +65,7 @@ class Certificate:
         raise UserError(say("public.wrong-certificate", files=names, why=why))
 
     def _versions(self) -> list[tuple[int, int]]:
-        """Return times and sizes of the files; zeros for a file that is missing."""
+        """Return the time of change and the size of both files; zeros for a missing file."""
         found = []
         for file in self._files:
             try:

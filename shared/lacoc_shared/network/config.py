@@ -1,4 +1,4 @@
-"""Zenoh's configuration for courts and for everyone else, with a reason for each entry.
+"""Zenoh's configuration for courts and for all other programs, with a reason for each entry.
 
 Some of Zenoh's defaults are dangerous for a public court: shared memory fails at 351 clients,
 messages may have any size, a send may block, and peers bypass the access rules. Only this module
@@ -96,7 +96,9 @@ def studio_config(listen: Sequence[str]) -> Config:
 
 
 def desk_config(listen: Sequence[str]) -> Config:
-    """Make the configuration of an office's desk: a studio's, with the access rules of a desk.
+    """Make the configuration of the session of an office's desk.
+
+    It is that of a studio, with the access rules of a desk.
 
     Args:
         listen: complete addresses.
@@ -105,7 +107,7 @@ def desk_config(listen: Sequence[str]) -> Config:
 
 
 def client_config(connect: Sequence[str], timeout_s: float, authority: str = "") -> Config:
-    """Make the configuration for everyone who is not a court.
+    """Make the Zenoh configuration of a client of a court or a studio.
 
     Args:
         connect: complete addresses; the first that answers is used.

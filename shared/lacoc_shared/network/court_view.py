@@ -1,4 +1,4 @@
-"""Keeps what a court has sent, and finds out what has not arrived. No I/O, no clock.
+"""Keeps the messages of a court, and finds out which have not arrived. No I/O, no clock.
 
 A spectator and a gateway each have a `CourtView`. They give it the messages that arrive, and
 request from the court those that it lacks.
@@ -35,7 +35,7 @@ class Told(msgspec.Struct):
 
 
 class CourtView(Generic[T]):
-    """The newest sheet, scene and log of a court.
+    """The newest sheet, scene and list of events that a court has sent.
 
     All bytes come from the network: if they can't be decoded, `take_...` raises `BadMessage` and
     changes nothing.
@@ -65,31 +65,34 @@ class CourtView(Generic[T]):
 
     @property
     def lacks_events(self) -> bool:
-        """True if the court has sent an event that did not arrive here."""
+        """Whether the court has sent an event that did not arrive here."""
         return self.log.differs(self._told.match, self._told.beat, self._told.events)
 
     @property
     def lacks_scene(self) -> bool:
-        """True if the scene here is not that of the newest frame."""
+        """Whether the scene that arrived last is another one than the newest frame's."""
         return self._frame_scene != self._scene_hash
 
     @property
     def lacks_sheet(self) -> bool:
-        """True if the sheet here is not, or may not be, the court's newest one."""
+        """Whether the sheet that arrived last is not, or perhaps not, the court's newest one."""
         return self._doubt or self.has_older_sheet or not self.fits
 
     @property
     def has_older_sheet(self) -> bool:
-        """True if the court has said that its newest sheet is another one than the sheet here."""
+        """Whether the court's health names another sheet than the one that arrived last."""
         return self._told.sheet not in (b"", self._sheet_hash)
 
     @property
     def fits(self) -> bool:
-        """True if the sheet belongs to the newest frame."""
+        """Whether the sheet that arrived last belongs to the newest frame."""
         return self._frame_scene == self._sheet_scene
 
     def doubt(self) -> None:
-        """Note that a message can't be decoded; the sheet will show the court's version."""
+        """Note that a message can't be decoded, so that `lacks_sheet` becomes true.
+
+        The sheet then shows whether the court has another version of the protocol.
+        """
         self._doubt = True
 
     def refuse_sheet(self) -> None:
@@ -97,7 +100,7 @@ class CourtView(Generic[T]):
         self.other_version = 0
 
     def see_frame(self, scene: bytes) -> None:
-        """Note the scene of the newest frame.
+        """Note which scene belongs to the newest frame.
 
         Args:
             scene: hash of the scene.
@@ -105,7 +108,7 @@ class CourtView(Generic[T]):
         self._frame_scene = scene
 
     def see_health(self, told: Told) -> None:
-        """Note what the court says that it has sent.
+        """Note which messages the court has sent, as its health says.
 
         Args:
             told: the fields of the court's health.
@@ -113,16 +116,16 @@ class CourtView(Generic[T]):
         self._told = told
 
     def add_event(self, event: Event, payload: bytes) -> bool:
-        """Add an event; return whether it is new."""
+        """Add an event that came; return whether it is new."""
         return self.log.add(event, self._keep(event, payload))
 
     def take_log(self, payload: bytes) -> list[Event]:
-        """Replace the events by the court's list; return the new ones in order."""
+        """Replace all events by the list that the court has sent; return the new ones in order."""
         events = decode(payload, tuple[Event, ...], MAX_BYTES)
         return self.log.restore([(event, self._keep(event, encode(event))) for event in events])
 
     def take_sheet(self, payload: bytes) -> bool:
-        """Keep a sheet; return whether it is new and of this version of the protocol."""
+        """Keep a sheet that came; return whether it is new and in this version of the protocol."""
         found = decode(payload, _SheetHead, MAX_BYTES)
         self._doubt = False
         self._sheet_scene, self.match_id = found.scene, found.match_id
@@ -134,7 +137,7 @@ class CourtView(Generic[T]):
         return True
 
     def take_scene(self, payload: bytes) -> bool:
-        """Keep a scene; return whether it is new and belongs to the newest frame."""
+        """Keep a scene that came, if it belongs to the newest frame; return whether it is new."""
         found = message_hash(payload)
         if found != self._frame_scene or found == self._scene_hash:
             return False

@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 class EventLog(Generic[T]):
-    """Keeps one object for each event: the event itself, or its bytes.
+    """Keeps the events of a match, each as one object: the event itself, or its bytes.
 
     An event that a restarted court sends again is not new. If an event differs from the known event
     with its number, earlier events stay valid and later ones are dropped.
@@ -28,7 +28,7 @@ class EventLog(Generic[T]):
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Return whether events are missing here, or differ from those of the court.
+        """Return whether these events are not the court's: some are missing, or there are others.
 
         Args:
             match: number of the open match, from the court's `Health` message.
@@ -47,7 +47,7 @@ class EventLog(Generic[T]):
         return newest.number < number or (newest.number > number and not came_later)
 
     def restore(self, events: Sequence[tuple[Event, T]]) -> list[Event]:
-        """Replace all known events with the court's list of events.
+        """Replace all known events by the list of events that the court has sent.
 
         Returns:
             The events of the list that were not known, in order.
@@ -59,7 +59,7 @@ class EventLog(Generic[T]):
         return new
 
     def add(self, event: Event, kept: T) -> bool:
-        """Add an event; return False if it was known already."""
+        """Add an event that came; return False if it was known already."""
         known = self._known.get(event.number)
         if known is not None and known[0] == event:
             return False

@@ -1,4 +1,4 @@
-"""Limits for the memory that glibc keeps (other C libraries have no such calls).
+"""Limits how much freed memory glibc keeps (other C libraries have no such calls).
 
 glibc gives each of Zenoh's many threads its own heap, and each heap keeps its largest size
 ever. Without these limits a court grows for hours as visitors come and go.
@@ -18,7 +18,7 @@ that size then stay in the heaps.
 
 
 def share() -> None:
-    """Set two limits for the memory that glibc keeps.
+    """Set two limits for the freed memory that glibc keeps.
 
     Threads that start later share a few heaps. Large blocks go back to the system when freed.
     """
@@ -27,7 +27,7 @@ def share() -> None:
 
 
 def give_back() -> None:
-    """Return free memory to the system; takes a few milliseconds."""
+    """Return memory that glibc has freed to the system; this takes a few milliseconds."""
     _call("malloc_trim", 0)
 
 

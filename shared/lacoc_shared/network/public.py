@@ -52,7 +52,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
         proxies: Iterable[str] = (),
         authority: Path | None = None,
     ) -> Self:
-        """Make a public address from its attributes, after checking them.
+        """Make a public address from its parts, after checking them.
 
         Raises:
             UserError: if something is wrong; the message names all mistakes.
@@ -105,7 +105,7 @@ class PublicAddress(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def pair(self) -> Pair | None:
-        """Certificate and key; None: nothing is encrypted."""
+        """The files of certificate and private key; None: nothing is encrypted."""
         if self.certificate is None or self.private_key is None:
             return None
         return Pair(self.certificate, self.private_key)

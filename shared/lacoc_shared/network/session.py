@@ -1,4 +1,4 @@
-"""The only access to Zenoh: courts and clients exchange bytes here, with typed errors.
+"""The only module that uses Zenoh: courts and clients exchange bytes through its sessions.
 
 A court polls: its subscribers and queryables are ring buffers that it empties once a beat. So all
 of the court's code runs on its own thread, in an order that the court decides. A client may wait:
@@ -31,19 +31,19 @@ own."""
 
 
 class NotConnected(UserError):
-    """There is no connection now, but there may be one later."""
+    """There is no connection to a court now, but there may be one later."""
 
 
 class NoReply(Exception):
-    """Nobody answered: there is no such court, the request is not allowed, or time was up."""
+    """Nobody answered a request: there is no receiver, it is not allowed, or the time was up."""
 
 
 class TooLate(NoReply):
-    """The other end did not answer in time; it may still have done what it was asked to do."""
+    """Nobody answered a request in time; it may still have been carried out."""
 
 
 class Refused(Exception):
-    """The answer was an error; `payload` has its bytes."""
+    """A request was answered with an error; `payload` has the bytes of the error."""
 
     def __init__(self, payload: bytes) -> None:
         super().__init__(f"refused with {len(payload)} bytes")
@@ -57,24 +57,24 @@ class Publisher:
         self._publisher = publisher
 
     def put(self, payload: bytes) -> None:
-        """Send a message; never waits for a receiver."""
+        """Send a message to all subscribers; never wait for them."""
         self._publisher.put(payload)
 
 
 class Ring:
-    """The newest messages of a subscription, polled by its owner."""
+    """Keeps the newest messages of a subscription until its owner takes them; it never waits."""
 
     def __init__(self, subscriber: "zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]") -> None:
         self._subscriber = subscriber
 
     def take(self) -> bytes | None:
-        """Return the oldest message in the ring, or None; never blocks."""
+        """Return the oldest message that was not taken yet; None if there is none. Never blocks."""
         sample = self._subscriber.try_recv()
         return None if sample is None else sample.payload.to_bytes()
 
 
 class Mail(NamedTuple):
-    """A message and its time of arrival on this machine."""
+    """A message that was received, and its time of arrival on this machine."""
 
     payload: bytes
     arrived_s: float
@@ -82,7 +82,7 @@ class Mail(NamedTuple):
 
 
 class Mailbox:
-    """The newest messages of a subscription, stored while its only reader does other things."""
+    """Keeps the newest messages of a subscription until its reader takes them, or waits for one."""
 
     def __init__(self, depth: int, notify: Callable[[], None] | None = None) -> None:
         self._mails: deque[Mail] = deque(maxlen=depth)
@@ -91,37 +91,37 @@ class Mailbox:
         self.subscriber: zenoh.Subscriber[None] | None = None
 
     def close(self) -> None:
-        """End the subscription; messages that came before can still be taken."""
+        """End the subscription; messages that have come before can still be taken."""
         if self.subscriber is not None:
             with suppress(zenoh.ZError):  # its session may be closed already
                 self.subscriber.undeclare()  # type: ignore[no-untyped-call]
 
     def deliver(self, sample: zenoh.Sample) -> None:
-        """Store a message; called on Zenoh's thread."""
+        """Put a message that has come into the mailbox; called on Zenoh's thread."""
         self._mails.append(Mail(sample.payload.to_bytes(), time.monotonic()))
         self._arrived.set()
         if self._notify is not None:
             self._notify()
 
     def take(self) -> Mail | None:
-        """Return the oldest message in the mailbox, or None."""
+        """Return the oldest message that was not taken yet; None if there is none."""
         return self._mails.popleft() if self._mails else None
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until there is a message; return False if none came in time."""
+        """Wait until there is a message in the mailbox; return False if none came in time."""
         self._arrived.clear()
         return bool(self._mails) or self._arrived.wait(timeout_s)
 
 
 class Question:
-    """A request that was sent, and its answer."""
+    """A request that this session has sent, and its answer once it has come."""
 
     def __init__(self, key: str, replies: "zenoh.Handler[zenoh.Reply]") -> None:
         self._key = key
         self._replies = replies
 
     def take(self) -> bytes | None:
-        """Return the answer, or None if it has not come yet; never blocks.
+        """Return the answer to the request, or None if it has not come yet; never block.
 
         Raises:
             NoReply: as in `Session.ask`.
@@ -134,7 +134,7 @@ class Question:
         return None if reply is None else self._read(reply)
 
     def wait(self) -> bytes:
-        """Wait for the answer; raises the same errors as `take`."""
+        """Wait for the answer to the request; raise the same errors as `take`."""
         for reply in self._replies:
             return self._read(reply)
         raise NoReply(self._key)
@@ -150,9 +150,9 @@ class Question:
 
 
 class Request:
-    """A request that came in and waits for its answer.
+    """A request that this session has received and must answer.
 
-    If it gets none, the sender gets `NoReply`.
+    If it is never answered, its sender gets `NoReply`.
     """
 
     def __init__(self, query: zenoh.Query) -> None:
@@ -162,24 +162,24 @@ class Request:
         self.payload = b"" if payload is None else payload.to_bytes()
 
     def reply(self, payload: bytes) -> None:
-        """Answer the request."""
+        """Answer this request."""
         with self._query as query:
             query.reply(self.key, payload)
 
     def refuse(self, payload: bytes) -> None:
-        """Answer with an error."""
+        """Answer this request with an error."""
         with self._query as query:
             query.reply_err(payload)
 
 
 class RequestQueue:
-    """The waiting requests under one key expression, polled by their owner."""
+    """Keeps the requests under one key expression until their owner takes and answers them."""
 
     def __init__(self, queryable: "zenoh.Queryable[zenoh.Handler[zenoh.Query]]") -> None:
         self._queryable = queryable
 
     def take(self) -> Request | None:
-        """Return the oldest waiting request, or None; never blocks."""
+        """Return the oldest request that was not taken yet; None if there is none. Never blocks."""
         while (query := self._queryable.try_recv()) is not None:
             request = Request(query)
             if "*" not in request.key:  # a request must name one seat or one decision
@@ -206,7 +206,7 @@ class Session:
         self.close()
 
     def close(self) -> None:
-        """Close the connection and everything that was declared on it.
+        """Close the connection, and with it all subscriptions and answers of this session.
 
         This takes ten seconds if the cable of another machine was pulled a moment ago.
         """
@@ -220,12 +220,12 @@ class Session:
         return Publisher(self._session.declare_publisher(key))
 
     def ring(self, key: str, depth: int) -> Ring:
-        """Subscribe for polling; the newest `depth` messages are kept."""
+        """Subscribe to a key expression; the ring keeps the newest `depth` messages for polling."""
         channel: RingChannel[zenoh.Sample] = RingChannel(depth)
         return Ring(self._session.declare_subscriber(key, channel))
 
     def mailbox(self, key: str, depth: int, notify: Callable[[], None] | None = None) -> Mailbox:
-        """Subscribe for waiting or polling; the newest `depth` messages are kept.
+        """Subscribe to a key expression; the mailbox keeps the newest messages, to wait or poll.
 
         Args:
             key: key expression.
@@ -239,15 +239,15 @@ class Session:
         return mailbox
 
     def desk(self, key: str, depth: int) -> RequestQueue:
-        """Declare that this session answers requests, and polls them.
+        """Declare that this session answers the requests under a key expression.
 
-        The newest `depth` are kept.
+        The queue keeps the newest `depth` requests, to be polled.
         """
         channel: RingChannel[zenoh.Query] = RingChannel(depth)
         return RequestQueue(self._session.declare_queryable(key, channel))
 
     def answer(self, key: str, take: Callable[[Request], None]) -> None:
-        """Declare that this session answers requests, and takes each one when it comes.
+        """Declare that this session answers the requests under a key expression, as they come.
 
         Args:
             key: key expression.
@@ -263,7 +263,7 @@ class Session:
         self._session.declare_queryable(key, Callback(deliver, indirect=False))
 
     def send(self, key: str, payload: bytes) -> None:
-        """Send one message under a key expression; never waits for a receiver."""
+        """Send one message under a key expression; never wait for a receiver."""
         self._session.put(key, payload)
 
     def ask(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> bytes:
@@ -278,14 +278,14 @@ class Session:
         return self.question(key, payload, timeout_s).wait()
 
     def question(self, key: str, payload: bytes = b"", timeout_s: float = 5.0) -> Question:
-        """Send a request, and return it; the caller can poll or wait for the answer."""
+        """Send a request, and return an object with which to poll or wait for the answer."""
         replies = self._session.get(
             key, payload=payload, timeout=timeout_s, consolidation=zenoh.ConsolidationMode.NONE
         )
         return Question(key, replies)
 
     def routers(self) -> tuple[str, ...]:
-        """Return the Zenoh ids of the sessions of courts to which this session is connected now."""
+        """Return the Zenoh ids of the courts' sessions to which this one is connected now."""
         return tuple(sorted(map(str, self._session.info.routers_zid())))
 
     def announce(self, key: str) -> None:

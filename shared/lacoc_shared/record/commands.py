@@ -120,7 +120,7 @@ def _foxglove(record: Record) -> bytes:
 
 
 def _made(make: Callable[[Record], bytes], record: Record) -> bytes:
-    """Make a file from a record.
+    """Make the bytes of an exported file from a record.
 
     Raises:
         UserError: if it can't be made, for example because messages of the record contradict each
@@ -174,7 +174,7 @@ def _summary(record: Record) -> dict[str, Any]:
 
 
 def _keys(record: Record, seat: int) -> dict[str, int]:
-    """Count a seat's key presses, and those of them that took effect late.
+    """Count the key presses of a seat, and those of them that took effect late.
 
     Also find the longest time for which the court held a key back, to make links equal [beats].
     """

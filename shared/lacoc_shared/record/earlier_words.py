@@ -13,7 +13,7 @@ from lacoc_shared.words import Phrase, say
 
 
 def in_earlier_words(recorded: Sequence[Event], again: Sequence[Event]) -> tuple[Event, ...]:
-    """Return the replay's events; where the record has the older form of a sentence, use that form.
+    """Return a replay's events, with older forms of sentences where the record has these.
 
     Args:
         recorded: the events of the record.

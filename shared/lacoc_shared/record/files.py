@@ -1,4 +1,4 @@
-"""The files of a record: several segments while a match runs, one packed file afterwards."""
+"""The files of a record: segments while a match runs; afterwards one compressed, packed file."""
 
 import os
 import re
@@ -12,17 +12,17 @@ _SEGMENT = re.compile(r"(?P<match_id>.+)\.(?P<segment>\d{3,})\.live\.mcap")
 
 
 def segment_path(folder: Path, match_id: str, segment: int) -> Path:
-    """Return the path of a segment."""
+    """Return the path of a segment of a match's record."""
     return folder / f"{match_id}.{segment:03d}.live.mcap"
 
 
 def packed_path(folder: Path, match_id: str) -> Path:
-    """Return the path of the one file into which the segments are packed."""
+    """Return the path of the one file into which a match's segments are joined (packed)."""
     return folder / f"{match_id}.mcap"
 
 
 def unfinished_path(packed: Path) -> Path:
-    """Return the path that a packed file has until it is complete."""
+    """Return the path at which a record's one packed file is written until it is complete."""
     return packed.with_name(f"{packed.name}.part")
 
 
@@ -38,7 +38,7 @@ def segment_name(path: Path) -> tuple[str, int] | None:
 
 
 def segment_paths(folder: Path, match_id: str) -> list[Path]:
-    """Return the existing segments of a match, in order."""
+    """Return the paths of those segments of a match that exist, in order."""
     found = [
         (name[1], path)
         for path in folder.glob("*.live.mcap")
@@ -65,9 +65,9 @@ def record_paths(path: Path) -> list[Path]:
 
 
 def is_held(path: Path) -> bool:
-    """Return whether a running process is writing or packing a segment.
+    """Return whether another process is working on a segment: writing it, or packing it.
 
-    True if the file has gone.
+    True also if the file has gone, because packing removes it.
     """
     try:
         with path.open("rb+") as file:

@@ -52,15 +52,15 @@ class MatchName:
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
-        """Read a match id; None if it is not one that a court makes."""
+        """Read a match id into its parts; None if it is not one that a court makes."""
         found = _ID.fullmatch(match_id)
         return found and cls(found["opened"], int(found["number"]), found["court"])
 
 
 def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:
-    """Return the matches of a court, the oldest first, each with its segments by number.
+    """Return the recorded matches of a court, the oldest first, each with its segments by number.
 
-    A match without segments is packed.
+    A match without segments has all of them joined in one packed file.
     """
     found: dict[MatchName, dict[int, Path]] = {}
     for path in sorted(folder.glob("*.mcap")):
@@ -83,7 +83,7 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
 
 
 def unpacked(folder: Path, court: str) -> list[str]:
-    """Return the ids of a court's matches that are over but not packed yet."""
+    """Return the ids of a court's matches that are over but whose segments are not joined yet."""
     return [
         str(name)
         for name, segments in court_matches(folder, court).items()
@@ -92,7 +92,7 @@ def unpacked(folder: Path, court: str) -> list[str]:
 
 
 def _is_finished(segment: Path) -> bool:
-    """Return whether a segment has an end; a court that is killed or fails writes none."""
+    """Return whether a segment was ended properly; a court that is killed or fails ends none."""
     try:
         with segment.open("rb") as file:
             if file.seek(0, os.SEEK_END) < 2 * len(MCAP0_MAGIC):

@@ -39,7 +39,7 @@ Texts = NDArray[np.str_]
 
 @dataclass(frozen=True, repr=False)  # that of a dataclass prints whole arrays
 class RobotArrays:
-    """The robot of a seat in each frame; NaN in frames without robots on the field."""
+    """The robot of a seat in each frame, as arrays; NaN in frames without robots on the field."""
 
     seat: str
     team: str
@@ -61,7 +61,7 @@ class RobotArrays:
 
 @dataclass(frozen=True, repr=False)
 class KeyArrays:
-    """The keys of all seats that the court passed to the match, also those that it refused."""
+    """The keys that were pressed on all seats, as arrays; also those that the match refused."""
 
     beat: Numbers
     """Beat in which the match took the key."""
@@ -83,7 +83,7 @@ class KeyArrays:
 
 @dataclass(frozen=True, repr=False)
 class EventArrays:
-    """The events of the match."""
+    """The events of a match as arrays."""
 
     number: Numbers
     beat: Numbers
@@ -142,7 +142,7 @@ class MatchArrays:
 
 
 def read(path: str | Path | Iterable[str | Path]) -> MatchArrays:
-    """Read a match.
+    """Read the record of a match as arrays.
 
     Args:
         path: the .mcap file of a match or one of its segments, as a text or a Path; or several

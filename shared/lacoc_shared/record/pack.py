@@ -22,7 +22,7 @@ from lacoc_shared.words import say
 
 
 def pack(segments: Sequence[Path], out: Path) -> None:
-    """Make one file from the segments of a match, then remove them.
+    """Join the segments of a match into one compressed file, then remove them.
 
     The file gets its name when it is complete and on the disk. If a file of this name exists
     already, an earlier packing was interrupted; then the file is only checked and the segments are
@@ -58,7 +58,9 @@ def pack(segments: Sequence[Path], out: Path) -> None:
 
 
 def write_packed(messages: Sequence[Message], out: Path) -> None:
-    """Write a packed file; it gets its name when it is complete and on the disk.
+    """Write all messages of a record into one packed file.
+
+    The file gets its name when it is complete and on the disk.
 
     Args:
         messages: all messages of a record, in order.
@@ -79,12 +81,12 @@ def write_packed(messages: Sequence[Message], out: Path) -> None:
 
 
 def read_messages(paths: Sequence[Path]) -> list[Message]:
-    """Read all messages of the files of a record, up to the first damage."""
+    """Read all messages of a record from its files, up to the first damage."""
     return _messages(paths)[0]
 
 
 def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Popen[bytes]:
-    """Pack matches in another process, which goes on when Ctrl-C ends this process.
+    """Join the segments of each match into one file, in another process; Ctrl-C does not end it.
 
     Raises:
         OSError: if the system can't start another process.
@@ -97,7 +99,7 @@ def pack_in_background(folder: Path, match_ids: Sequence[str]) -> subprocess.Pop
 
 
 def _whole_match(segments: Sequence[Path], out: Path) -> list[Message]:
-    """Read all messages of a match.
+    """Read all messages of a match from its segments.
 
     Raises:
         UserError: if the segments can't be read to their end. Then they must not be removed,
@@ -111,7 +113,9 @@ def _whole_match(segments: Sequence[Path], out: Path) -> list[Message]:
 
 
 def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[bytes]:
-    """Pack a copy of a match as far as it is recorded, in another process; the segments stay.
+    """Copy a match, as far as it is recorded, into one packed file; its segments stay.
+
+    Another process does this.
 
     Raises:
         OSError: if the system can't start another process.
@@ -124,7 +128,7 @@ def copy_in_background(segments: Sequence[Path], out: Path) -> subprocess.Popen[
 
 
 def _compare(wanted: Sequence[Message], wrong: Stop | None, packed: Path) -> None:
-    """Check that the segments can be removed without the loss of a message.
+    """Check that a packed file has all messages of the segments, so that these can be removed.
 
     If an earlier packing was interrupted while it removed segments, only the last segments of the
     match are still there.
@@ -153,7 +157,7 @@ def _messages(paths: Sequence[Path]) -> tuple[list[Message], Stop | None]:
 
 
 def main(folder: str, *match_ids: str) -> int:
-    """Pack matches of a folder; return the exit code.
+    """Join the segments of each match in a folder into one file; return the exit code.
 
     With "--copy" in place of the folder, the other arguments are the path of a packed file and the
     segments of one match. The segments are packed into that file, and stay.

@@ -19,7 +19,7 @@ _WORDS = ("words", "changes", "vanished")
 
 
 class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
-    """An `Event` of protocol 1."""
+    """An event of a match, as records of protocol 1 have it."""
 
     number: int
     match: int
@@ -32,7 +32,7 @@ class _OldEvent(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def read_event(data: bytes, max_bytes: int) -> Event:
-    """Decode a recorded event.
+    """Decode an event from a record of protocol 1 or 2.
 
     Raises:
         BadMessage: if it is not an event of either protocol.
@@ -55,7 +55,7 @@ def fault_of(event: Event) -> Phrase:
 
 
 def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event]) -> bool:
-    """Return whether a beat's events equal the recorded ones.
+    """Return whether a replay's events of a beat equal the recorded ones.
 
     In a record of protocol 1, differences between sentences do not count.
     """
@@ -65,9 +65,9 @@ def same_events(header: Header, recorded: Sequence[Event], again: Sequence[Event
 
 
 def same_result(header: Header, recorded: Result, again: Result) -> bool:
-    """Return whether a result equals the recorded one.
+    """Return whether the result of a replay equals the recorded one.
 
-    In a record of protocol 1, a difference between the reasons does not count.
+    In a record of protocol 1, the two may give different reasons why the match ended.
     """
     if _is_old(header):
         again = msgspec.structs.replace(again, reason=recorded.reason)
@@ -79,6 +79,6 @@ def _is_old(header: Header) -> bool:
 
 
 def _bare(event: Event) -> bytes:
-    """Encode an event without its sentences."""
+    """Encode an event without its sentences, to compare it with another one."""
     data = {name: value for name, value in event.data.items() if name not in _WORDS}
     return codec.encode(msgspec.structs.replace(event, said=say("plain.text", text=""), data=data))

@@ -1,4 +1,4 @@
-"""Reads a record from its packed file or its segments, even if it is cut off anywhere."""
+"""Reads a record from its one packed file or its segments, even if they are cut off."""
 
 from bisect import bisect_right
 from collections.abc import Iterable, Sequence
@@ -19,11 +19,11 @@ V = TypeVar("V")
 
 
 class NoMatch(UserError):
-    """These files contain no match that can be read."""
+    """Raised when files contain no match that can be read."""
 
 
 class _Gap(Exception):
-    """Beats are missing between segments."""
+    """Raised when beats are missing between two segments of a match."""
 
     def __init__(self, said: Phrase) -> None:
         super().__init__()
@@ -73,7 +73,7 @@ class Record:
 
     @property
     def header(self) -> Header:
-        """The first segment's header."""
+        """The header of the record's first segment."""
         return self.headers[0]
 
     @property
@@ -114,7 +114,7 @@ class Record:
         return _newest(beat, self.scenes)
 
     def until(self, beat: int) -> "Record":
-        """Return the record with only its messages up to a beat."""
+        """Return the record with only those of its messages that belong to beats up to this one."""
         kept = Record(
             headers=[header for header in self.headers if header.first_beat <= beat],
             inputs={number: items for number, items in self.inputs.items() if number <= beat},
@@ -190,7 +190,7 @@ class Record:
                 self.cut = said
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
-        """Add one message to the record."""
+        """Add one message of a file to the record."""
         match topic:
             case "/lacoc/header":
                 self._begin_segment(path, message)
@@ -253,9 +253,9 @@ class Record:
         self._forget_from(header.first_beat)
 
     def _forget_from(self, beat: int) -> None:
-        """Drop the messages of this beat and of later beats: a new segment has them again.
+        """Drop the messages of this beat and of later ones, because the next segment repeats them.
 
-        See `Header.first_beat`.
+        The next segment begins with this beat (`Header.first_beat`).
         """
         if self.last_beat < beat:
             return
@@ -273,7 +273,7 @@ class Record:
 
 
 def _no_header(paths: Sequence[Path]) -> Phrase:
-    """Return what was found in the files, of which none has a complete header."""
+    """Return a sentence about files that hold no record, because none has a complete header."""
     if len(paths) > 1:
         return say("recording.no-match", files=[str(path) for path in paths])
     size = paths[0].stat().st_size
@@ -283,7 +283,7 @@ def _no_header(paths: Sequence[Path]) -> Phrase:
 
 
 def _drop(items: dict[int, V], beat: int) -> None:
-    """Drop the entries from a beat on; `items` must be in the order of beats."""
+    """Drop all entries of this beat and later ones; `items` must be in the order of beats."""
     while items and next(reversed(items)) >= beat:
         items.popitem()
 

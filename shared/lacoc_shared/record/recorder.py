@@ -1,4 +1,4 @@
-"""What a match writes into its record, whatever the form of the file."""
+"""Writes what happens in a match into its record, in whatever form the file has."""
 
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -18,7 +18,7 @@ HEADER, _INPUT, _EVENT, _FRAME, _TOUCH, _SNAPSHOT, _SHEET, _SCENE, _RESULT, _HEA
 
 
 class Recorder(ABC):
-    """A file of a match's record, open for writing."""
+    """A file of a match's record that is being written."""
 
     path: Path
     """The file."""
@@ -30,11 +30,11 @@ class Recorder(ABC):
         self._write(_INPUT, beat, codec.encode(item))
 
     def event(self, event: Event) -> None:
-        """Write an event, at its own beat."""
+        """Write an event of the match, at the event's own beat."""
         self._write(_EVENT, event.beat, codec.encode(event))
 
     def frame(self, beat: int, encoded: bytes) -> None:
-        """Write a frame, encoded as it is published."""
+        """Write a frame of the match, in the bytes that were published."""
         self._write(_FRAME, beat, encoded)
 
     def touch(self, beat: int, touch: Touch) -> None:
@@ -46,19 +46,19 @@ class Recorder(ABC):
         self._write(_SNAPSHOT, beat, data)
 
     def sheet(self, beat: int, sheet: Sheet) -> None:
-        """Write a new sheet."""
+        """Write a new sheet of the match."""
         self._write(_SHEET, beat, codec.encode(sheet))
 
     def scene(self, beat: int, scene: Scene) -> None:
-        """Write a new scene."""
+        """Write a new scene of the match."""
         self._write(_SCENE, beat, codec.encode(scene))
 
     def result(self, result: Result) -> None:
-        """Write the result; a later one replaces it."""
+        """Write the match's result; a later result replaces it."""
         self._write(_RESULT, result.beats, codec.encode(result))
 
     def health(self, beat: int, verdict: HealthVerdict) -> None:
-        """Write how well the match has run so far; a later one replaces it."""
+        """Write the verdict how well the match has run so far; a later verdict replaces it."""
         self._write(_HEALTH, beat, codec.encode(verdict))
 
     @abstractmethod
@@ -71,7 +71,7 @@ class Recorder(ABC):
 
     @abstractmethod
     def end(self) -> None:
-        """Write what follows the last message, because the match is over."""
+        """Write the end of the file, which shows that the match is over."""
 
     @abstractmethod
     def close(self) -> None:
@@ -79,15 +79,15 @@ class Recorder(ABC):
 
     @abstractmethod
     def leave(self) -> None:
-        """Close the file without an end, because the match is not over."""
+        """Close the file without its end, because the match is not over and may go on later."""
 
     @abstractmethod
     def _write(self, channel: int, beat: int, data: bytes) -> None:
-        """Write a message."""
+        """Write one message into the file, on the channel of its kind."""
 
 
 def no_record(path: Path, error: OSError) -> UserError:
-    """Return the message for a file of a record that can't be made."""
+    """Return the error which says that a file of a record can't be made."""
     if path.exists():
         return UserError(say("record.exists", file=str(path)))
     why = error.strerror or str(error)

@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase
 
 
 class ForkSeat(msgspec.Struct, frozen=True, kw_only=True):
-    """Who steers a robot in a fork's own beats: a bot, a script, or else the recorded keys."""
+    """Who steers the robot of a seat in a fork: a bot, a script of keys, or the recorded keys."""
 
     seat: str
     """Id of the seat."""
@@ -36,13 +36,13 @@ class ForkChanges(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def is_none(self) -> bool:
-        """True if nothing was changed: no bot, script, take-back or restart."""
+        """Whether nothing was changed: no bot, script, take-back or restart."""
         players = any(one.bot or one.script for one in self.seats)
         return not players and self.take_back is None and not self.restart
 
 
 class Origin(msgspec.Struct, frozen=True, kw_only=True):
-    """The match from which a fork goes on, and the beat."""
+    """The match from which a fork goes on, and the beat at which it does so."""
 
     match_id: str
     """Id of that match; it may be a fork too."""
@@ -98,7 +98,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Touch(msgspec.Struct, frozen=True, array_like=True):
-    """Facts of a tick that its frame lacks: markers that were touched, robots that were put back.
+    """What happened in a tick besides its frame: markers touched, robots put back to their start.
 
     It is not recorded for a tick without touches and without robots that were put back.
     """
@@ -110,7 +110,7 @@ class Touch(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Result(msgspec.Struct, frozen=True, kw_only=True):
-    """The end of a match. It keeps both the computed and the official result (rules 4.1)."""
+    """The result of a match: the one computed by the rules, and the official one."""
 
     match_id: str
     court: str

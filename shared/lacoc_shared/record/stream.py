@@ -80,7 +80,7 @@ of the message."""
 
 
 class Stop(NamedTuple):
-    """A fault of a file, which in most cases ends the reading."""
+    """What is wrong with a file of a record; in most cases reading stops there."""
 
     why: Phrase
     """The fault, as the end of a sentence (`cut.*`)."""
@@ -92,20 +92,21 @@ class Stop(NamedTuple):
 
     @property
     def loses_nothing(self) -> bool:
-        """True if the fault loses no message, because all of them were read."""
+        """Whether the fault loses no message, because all of them were read."""
         return self.at_end and not self.damaged
 
 
 class _AnyHeader(msgspec.Struct):
-    """The only field that the headers of all formats have in common."""
+    """The only field that the header of a record has in every format."""
 
     format: int
 
 
 def walk_messages(path: Path, take: Take) -> Stop | None:
-    """Pass every whole message of a file to `take`, up to its end or the first fault.
+    """Decode each whole message of a record's file and pass it to `take`, up to the first fault.
 
-    As `walk_bytes`; but bytes that can't be decoded as a message of their topic are a fault too.
+    It is like `walk_bytes`, but bytes that can't be decoded as a message of their topic are a
+    fault too.
     """
     try:
         values = _VALUES + path.stat().st_size * _VALUES_RATIO
@@ -124,7 +125,7 @@ def walk_messages(path: Path, take: Take) -> Stop | None:
 
 
 def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
-    """Pass the bytes of every whole message of a file to `take`, without decoding them.
+    """Pass the bytes of each whole message of a record's file to `take`, without decoding them.
 
     A packed file's messages are in chunks, each with a checksum: nothing in a damaged chunk
     is passed on. Other checksums find damage in the index of the chunks.
@@ -228,7 +229,7 @@ def _is_index_damaged(data: bytes, at: int) -> bool:
 
 
 def _is_packed(data: bytes) -> bool:
-    """Return whether a file's messages are in chunks, as in a packed file."""
+    """Return whether a file is the one packed file of a record: its messages are in chunks."""
     at = len(MCAP0_MAGIC)
     while at < len(data) and data[at] not in (Opcode.MESSAGE, Opcode.CHUNK):
         at += _RECORD_HEAD.size + int.from_bytes(data[at + 1 : at + 9], "little")
@@ -244,7 +245,7 @@ def _is_cut(data: bytes, at: int) -> bool:
 
 
 def _next_beat(before: int, beat: int, topic: str) -> int:
-    """Return the beat of a message.
+    """Return `beat`, the beat of a message, after a check that it is plausible.
 
     Raises:
         BadMessage: if this beat can't follow the one before.
@@ -255,7 +256,7 @@ def _next_beat(before: int, beat: int, topic: str) -> int:
 
 
 class _Found(NamedTuple):
-    """An MCAP record, perhaps in a chunk."""
+    """Where an MCAP record (a part of an MCAP file) stands in a file, perhaps inside a chunk."""
 
     at: int
     """Byte of the file at which the record begins, or the chunk that contains it."""

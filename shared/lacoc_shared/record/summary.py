@@ -15,7 +15,7 @@ _MAX_BYTES = 1 << 20
 
 
 class Summary(msgspec.Struct, frozen=True):
-    """A match in a list of recordings."""
+    """What a list of recordings shows of a match."""
 
     title: str
     """Title of the arena."""
@@ -36,7 +36,7 @@ class Summary(msgspec.Struct, frozen=True):
 
 
 def summary(path: Path) -> Summary | None:
-    """Read the summary of a packed record; None if the file is incomplete or not a record.
+    """Read the summary of a finished record's one file; None if it is incomplete or no record.
 
     It reads only the parts of the file with header, sheets and results.
     """

@@ -99,7 +99,7 @@ class RecordWriter(Recorder):
             raise UserError(say("record.no-room", file=self.path.name, why=self._write_error))
 
     def end(self) -> None:
-        """Write the summary, because the match is over. A second call does nothing."""
+        """Write the file's summary, because the match is over. A second call does nothing."""
         if not self._ended:
             self._ended = True
             self._put(self._ending())
@@ -112,7 +112,7 @@ class RecordWriter(Recorder):
         self.leave()
 
     def leave(self) -> None:
-        """Close the file without an end, when the disk has everything.
+        """Close the file without its end, after the disk has everything.
 
         A match without an end can continue in a new segment.
         """
@@ -141,7 +141,7 @@ class RecordWriter(Recorder):
             del waiting[: self._append(waiting)]
 
     def _append(self, data: bytes | bytearray) -> int:
-        """Append as much as the disk takes; return the number of bytes written."""
+        """Append as many bytes to the file as the disk takes; return how many were written."""
         try:
             return self._file.write(data)
         except OSError as error:
@@ -174,7 +174,7 @@ class RecordWriter(Recorder):
         )
 
     def _ending(self) -> bytes:
-        """Return the bytes that follow the last message in a finished file.
+        """Return the bytes that follow the last message in the file of a match that is over.
 
         They have no index, because an index lists chunks, and a segment has none.
         """

@@ -15,7 +15,7 @@ class Phrase(msgspec.Struct, frozen=True, omit_defaults=True):
     """Values for the holes of the sentence, by name."""
 
     def with_values(self, **values: "Value") -> "Phrase":
-        """Return the phrase with further values, which an earlier caller could not give."""
+        """Return the phrase with further values, which were not known when it was made."""
         return Phrase(self.code, {**self.values, **values})
 
     def __hash__(self) -> int:
@@ -27,7 +27,7 @@ Value = Union[str, int, float, bool, None, Phrase, tuple[Scalar, ...]]  # noqa: 
 
 
 def say(code: str, /, **values: str | int | float | Phrase | Sequence[Scalar] | None) -> Phrase:
-    """Make a phrase.
+    """Make a phrase from a code and values.
 
     Nothing is checked here, so that a wrong value never stops a match. Instead
     tests/shared/test_words.py compares the code and the names in every call of `say` with the

@@ -49,7 +49,7 @@ def current() -> Language:
 
 
 def render(phrase: Phrase | str, language: Language | None = None) -> str:
-    """Put a phrase into words.
+    """Return the words of a phrase in a language.
 
     Args:
         phrase: the phrase; a plain text is returned unchanged.
@@ -82,7 +82,7 @@ def _rendered(phrase: Phrase, language: Language, depth: int) -> str:
 
 
 def _unknown(phrase: Phrase, depth: int) -> str:
-    """Return the text for a code that is not in the table: the code with its plain values."""
+    """Return the text of a phrase whose code is not in the table: the code and the values."""
     names = sorted(phrase.values, key=lambda name: name.encode("utf-16-be", "surrogatepass"))
     plain = (
         f"{_text(name)}: {_filled(phrase.values[name], (), 'en', DEEPEST)}"
@@ -171,5 +171,5 @@ def _number(value: float, formats: tuple[str, ...]) -> str:
 
 
 def _fixed(value: float, digits: int) -> str:
-    """Round half up, from the exact value, as JavaScript's `toFixed` does."""
+    """Round a number half up, from its exact value, as JavaScript's `toFixed` does."""
     return str(Decimal(value).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP, _EXACT))

@@ -35,7 +35,7 @@ ON_PAGES = FILES[:-3]
 
 
 class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The entry of a code in the table."""
+    """The entry of a sentence in the table: its values, and its words in both languages."""
 
     en: str
     ja: str
@@ -45,7 +45,7 @@ class Wording(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @cache
 def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
-    """Read the table: a mapping from each code to its entry."""
+    """Read the table of words: a mapping from each code to its entry."""
     entries: dict[str, Wording] = {}
     folder = resources.files("lacoc_shared.words") / "texts"
     for file in files:
@@ -57,7 +57,7 @@ def table(files: tuple[str, ...] = FILES) -> Mapping[str, Wording]:
 
 
 def read(file: Traversable) -> Mapping[str, Wording]:
-    """Read a TOML file of the table: a mapping from each code to its entry."""
+    """Read one TOML file of the table of words: a mapping from each code to its entry."""
     return {
         f"{subject}.{name}": msgspec.convert(entry, Wording)
         for subject, codes in tomllib.loads(file.read_text(encoding="utf-8")).items()
@@ -66,7 +66,7 @@ def read(file: Traversable) -> Mapping[str, Wording]:
 
 
 def faults(phrase: Phrase) -> list[str]:
-    """List how a phrase differs from its entry in the table.
+    """List how a phrase differs from its entry in the table of words.
 
     Tests use it to check the phrases that programs send.
     """

@@ -1,4 +1,4 @@
-"""The template language of the table, parsed: text, holes and clauses.
+"""Parses templates, the sentences in the table of words: text, holes for values, and clauses.
 
     {team}               the value as it is
     {seconds:.1}         a number with this many decimals
@@ -23,7 +23,7 @@ _FORMAT = re.compile(r"\.\d|\+|clock|marker|or|and|quoted|plural [^|,]*\|[^|,]*|
 
 
 class BadTemplate(ValueError):
-    """A template in the table is not valid."""
+    """Raised when a template in the table of words is not valid."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ Part = str | Hole | Clause
 
 @lru_cache(maxsize=2048)
 def parse(text: str) -> tuple[Part, ...]:
-    """Parse a template.
+    """Parse a template of the table of words.
 
     Raises:
         BadTemplate: if the text is no valid template. A test parses every template of the table.

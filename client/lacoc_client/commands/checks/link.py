@@ -1,4 +1,4 @@
-"""Measures the link to a court: whether it works, how long an answer takes, what gets lost."""
+"""Measures the connection to a court: does it work, how fast is an answer, what gets lost?"""
 
 import time
 from collections.abc import Iterator
@@ -21,7 +21,7 @@ _FIRST_S = 1.0
 
 
 def link(access: Access, seconds: float, *, planned: bool = False) -> Iterator[Finding]:
-    """Check the link to a court, as a spectator sees it.
+    """Check the network connection to a court, as a spectator has it.
 
     Args:
         access: how to reach the court.

@@ -46,7 +46,7 @@ _ASK_S = 1.0
 
 
 class Status(StrEnum):
-    """How serious a finding is."""
+    """How serious a finding of a check is."""
 
     OK = "ok"
     NOTE = "note"
@@ -55,7 +55,7 @@ class Status(StrEnum):
 
 
 class Finding(msgspec.Struct, frozen=True):
-    """One finding: what it is about, how serious it is, and what to do."""
+    """One finding of a check: what it is about, how serious it is, and what to do."""
 
     about: Phrase | str
     status: Status
@@ -119,7 +119,7 @@ def _install(needed: Requirement) -> Phrase:
 
 
 def _package(needed: Requirement) -> Finding | None:
-    """Check the version of a package; None if it is not installed."""
+    """Check the version of a package that LACOC needs; None if the package is not installed."""
     try:
         found = version(needed.name)
     except PackageNotFoundError:

@@ -1,4 +1,4 @@
-"""Checks the public address of pages as a browser reaches it: its name, certificate, WebSocket."""
+"""Checks the public address of an event's pages: its name, certificate and WebSocket."""
 
 import http.client
 import socket
@@ -36,7 +36,7 @@ class _PageAnswer(NamedTuple):
 
 
 def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
-    """Check the public address of pages.
+    """Check the public address of an event's pages, as a browser reaches it.
 
     Args:
         public: how others reach the pages; it has an address.
@@ -110,7 +110,7 @@ def _reached(public: PublicAddress, title: str, health: GatewayHealth) -> Iterat
 
 
 def _certificate(public: PublicAddress) -> Finding:
-    """Check until when the certificate of the pages is valid.
+    """Check until when the certificate of an event's pages is valid.
 
     Raises:
         OSError: if there is no connection, or the certificate is not proven.
@@ -152,7 +152,7 @@ def _websocket(public: PublicAddress) -> Finding:
 
 
 def _get(public: PublicAddress, path: str) -> _PageAnswer:
-    """Request a path of the pages and return status and body.
+    """Request a path from an event's pages; return the HTTP status and the body.
 
     Raises:
         OSError: if nobody answers.

@@ -4,7 +4,7 @@ import numpy as np
 
 
 class Mixer:
-    """A stereo track that is taken piece by piece from its beginning.
+    """A stereo sound track that is taken piece by piece, from its beginning.
 
     Where nothing sounds it is silent.
     """
@@ -14,7 +14,7 @@ class Mixer:
         self._mixed = np.zeros((0, 2), np.int32)
 
     def add(self, at: int, samples: bytes) -> None:
-        """Add a sound.
+        """Add a sound to the track.
 
         Args:
             at: number of the sample at which the sound begins. If that part of the track was taken

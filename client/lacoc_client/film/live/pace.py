@@ -20,9 +20,9 @@ class PicturePace:
         return max(0.0, self._began_s + self._next / self._fps - now_s)
 
     def take(self, now_s: float) -> int:
-        """Return the number of the picture to take now.
+        """Return the number of the picture of the stream to take now.
 
-        Pictures between it and the last one are skipped.
+        Skip the pictures between it and the last one that was taken.
 
         Args:
             now_s: the time [s]; the next picture must be due.
@@ -36,5 +36,5 @@ class PicturePace:
         return number
 
     def time_s(self, number: int) -> float:
-        """Return the time at which a picture is due [s], by the clock of `now_s`."""
+        """Return the time at which a picture of the stream is due [s], by the clock of `now_s`."""
         return self._began_s + number / self._fps

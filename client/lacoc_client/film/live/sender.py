@@ -24,7 +24,7 @@ _LOOK_S = 0.2
 
 
 class LivePicture(NamedTuple):
-    """A picture of a stream."""
+    """A picture of a live stream."""
 
     number: int
     data: bytes
@@ -32,7 +32,7 @@ class LivePicture(NamedTuple):
 
 
 class Sender:
-    """Encodes pictures and sounds and sends them.
+    """Encodes the pictures and sounds of a live stream, and sends them.
 
     If the server is gone, tries again until it is back.
 
@@ -61,14 +61,14 @@ class Sender:
         self._thread.start()
 
     def show(self, picture: LivePicture) -> None:
-        """Put a picture in the queue, or leave it out if the queue is full."""
+        """Put a picture into the queue to the encoder, or leave it out if the queue is full."""
         try:
             self._waiting.put_nowait(picture)
         except Full:
             self.left_out += 1
 
     def hear(self, at_s: float, samples: bytes) -> None:
-        """Send a sound.
+        """Add a sound to the stream.
 
         Args:
             at_s: when the sound begins, counted from picture 0 [s].
@@ -78,7 +78,7 @@ class Sender:
             self._mixer.add(round(at_s * SOUND_HZ), samples)
 
     def end(self) -> None:
-        """Send the pictures that wait, then end the stream."""
+        """Send the pictures that are still in the queue, then end the stream."""
         self._ending.set()
         self._thread.join(10 * _AGAIN_S)
 
@@ -98,7 +98,7 @@ class Sender:
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Drop all pictures that arrive in the next `seconds`."""
+        """Drop all pictures that are put into the queue in the next `seconds`."""
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
             self.left_out += self._next() is not None
@@ -110,7 +110,7 @@ class Sender:
             return None
 
     def _send(self, was_away: bool) -> None:
-        """Open the target, and send pictures and sounds until the stream ends.
+        """Open the stream's target, and send it pictures and sounds until the stream ends.
 
         Raises:
             OSError: if the target can't be written.

@@ -32,7 +32,7 @@ _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
 
 @dataclass(frozen=True)
 class Streamed:
-    """What a stream shows."""
+    """What a live stream shows."""
 
     pages: str
     """Address of the event's pages."""
@@ -40,7 +40,7 @@ class Streamed:
     """Name of the court that is shown; "": what the director chooses."""
 
     def address(self, look: Look) -> str:
-        """Return the address of the broadcast's page, with the language of a look."""
+        """Return the address of the broadcast's page, in the language of `look`."""
         watched = {"court": self.court} if self.court else {"director": "1"}
         query = {"q": "low", "lang": look.language, "taken": "1", **watched}
         return f"{self.pages.rstrip('/')}/overlay?{urlencode(query)}"
@@ -48,7 +48,7 @@ class Streamed:
 
 @dataclass(frozen=True)
 class Report:
-    """How a stream went since the report before."""
+    """How well a live stream went since the last report."""
 
     hz: float
     """How many pictures were sent a second."""
@@ -57,7 +57,7 @@ class Report:
 
 
 class _Streaming:
-    """A stream that is running."""
+    """Draws the pictures of one live stream, and sends them with its sounds."""
 
     def __init__(
         self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
@@ -73,7 +73,7 @@ class _Streaming:
         self._told = (0, 0)
 
     def run(self, stopping: Callable[[], bool], report: Callable[[Report], None]) -> None:
-        """Stream until it is told to stop.
+        """Draw and send the stream until it is told to stop.
 
         Raises:
             UserError: if there is no browser.
@@ -92,7 +92,7 @@ class _Streaming:
                     time.sleep(_AGAIN_S)
 
     def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
-        """Open the page; try again until it opens.
+        """Open the broadcast's page; try again until it opens.
 
         Raises:
             Error: if the browser has ended.
@@ -114,7 +114,7 @@ class _Streaming:
                 return
 
     def _picture(self, page: Page, shots: Shots) -> None:
-        """Wait for the time of the next picture and take it.
+        """Wait until the stream's next picture is due, and take it.
 
         Also send the earlier pictures that have waited `_HELD_S` for their sounds.
         """

@@ -19,7 +19,7 @@ _SERVERS = {"rtmp": "flv", "rtmps": "flv", "srt": "mpegts", "tcp": "mpegts", "ud
 
 @dataclass(frozen=True)
 class Target:
-    """Where a stream goes.
+    """Where a live stream goes: a file, a folder or a video server.
 
     Args:
         address: a path, or an address of a video server.
@@ -35,12 +35,12 @@ class Target:
 
     @property
     def shown(self) -> str:
-        """The address for messages, without its last part: that is the stream's secret key."""
+        """The address as messages show it: without its last part, the stream's secret key."""
         return f"{self.address.rpartition('/')[0]}/..." if self.is_remote else self.address
 
 
 def target(wanted: str) -> Target:
-    """Return the target that a user named.
+    """Return the target that a user named for a live stream.
 
     Args:
         wanted: `rtmp://...`, `rtmps://...`, `srt://...`; a folder, which gets the files of an HLS

@@ -1,1 +1,1 @@
-"""The link of an event: what it contains, and what its pages tell commands about the event."""
+"""The link that opens an event: what it contains, and what a command learns from its pages."""

@@ -1,6 +1,6 @@
-"""What an event's pages tell commands: its courts and their addresses.
+"""What an event's pages tell commands: the event's courts and their addresses.
 
-It is public: whoever can open the pages may read it at `event.json`.
+This is public: whoever can open the pages may read it at their path `event.json`.
 """
 
 import ssl
@@ -38,14 +38,14 @@ class LinkedEvent(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FoundEvent(NamedTuple):
-    """The event to which a link leads."""
+    """An event, found by a link to its pages."""
 
     link: Link
     event: LinkedEvent
 
     @property
     def courts(self) -> dict[str, tuple[str, ...]]:
-        """The courts that a command can reach, with their addresses.
+        """The courts of the event that a command can reach, with their addresses.
 
         Raises:
             UserError: if a command can reach none of them.
@@ -57,7 +57,7 @@ class FoundEvent(NamedTuple):
 
 
 def find(text: str) -> FoundEvent:
-    """Read a link, and ask its pages for the event.
+    """Read a link, and ask the pages that it leads to about the event.
 
     Args:
         text: a link, or the address of pages.

@@ -83,9 +83,9 @@ class SheetMirror:
             return
 
     def _copy_pictures(self) -> None:
-        """Copy the pictures that are missing.
+        """Copy the pictures of teams that are not copied yet.
 
-        Those that can't be fetched now are tried again later.
+        Pictures that can't be fetched now are fetched later.
         """
         for files, path in [*self._missing.items()]:
             try:
@@ -110,9 +110,11 @@ class SheetMirror:
         return {files: path for files, path in paths.items() if path and not path.exists()}
 
     def _get(self, name: str, tag: str = "") -> HTTPResponse:
-        """Open a request to the pages.
+        """Request a file from the pages by its path.
 
-        With a tag, they answer only if they have something newer.
+        Args:
+            name: path of the file.
+            tag: the ETag of the copy that is here; the pages then send only a newer file.
         """
         asked = urllib.request.Request(f"{self._pages}/{name}", headers={"If-None-Match": tag})
         found = urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context)

@@ -59,7 +59,7 @@ class Field(NamedTuple):
 
 
 class _Mark(NamedTuple):
-    """A character that is drawn over the pixels."""
+    """A letter that is drawn over the pixels, such as that of a seat."""
 
     x_m: float
     y_m: float
@@ -103,7 +103,7 @@ class PixelGrid:
         return self._circles[place]
 
     def cell(self, x_m: float, y_m: float) -> tuple[int, int]:
-        """Return row and column of the character at a point."""
+        """Return row and column of the terminal's character at a point of the field."""
         field = self.field
         column = 1 + (x_m - field.x_m + field.half_x_m) / self.pixel_m
         line = 1 + (field.y_m + field.half_y_m - y_m) / self.pixel_m
@@ -220,7 +220,7 @@ def _style(front: _Rgb, back: _Rgb, bold: bool = False) -> Style:
 
 
 def _joined(segments: list[Segment]) -> Iterator[Segment]:
-    """Merge neighbours of the same style into one segment."""
+    """Merge neighbouring pieces of text that have the same style into one."""
     text, style = "", None
     for segment in segments:
         if segment.style is not style and text:

@@ -35,7 +35,7 @@ class BoardView:
         self._grid: PixelGrid | None = None
 
     def draw(self, view: Spectator, events: Sequence[Event], silent_s: float) -> RenderableType:
-        """Draw the present state.
+        """Draw the field, and beside it how the match stands now.
 
         Args:
             view: the court.
@@ -58,7 +58,7 @@ class BoardView:
         return both
 
     def _fitting_grid(self, view: Spectator) -> PixelGrid | None:
-        """Return the largest grid that fits the terminal."""
+        """Return the pixels of the largest picture that fits into the terminal."""
         if view.sheet.scene != self._scene or self._field is None:
             try:
                 self._field = Field.of(view.scene(), view.sheet)
@@ -112,7 +112,7 @@ def _side(frame: Frame, sheet: Sheet, banner: str) -> list[Text]:
 
 
 def _latest(events: Sequence[Event], sheet: Sheet, rows: int, width: int) -> list[Text]:
-    """Return the latest events that fit completely, the newest last."""
+    """Return the newest events that fit beside the board completely, the newest last."""
     shown: list[Text] = []
     for event in reversed(events):
         clock, text = event_columns(event, sheet)

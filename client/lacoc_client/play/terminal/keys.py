@@ -41,14 +41,14 @@ _WINDOWS_LOOK_S = 0.005
 
 
 class KeySource(Protocol):
-    """A source of keys: a terminal, or a script in a pipe."""
+    """Something from which keys come: a terminal, or a script in a pipe."""
 
     @property
     def ended(self) -> bool:
-        """True if no more keys will come."""
+        """Whether no more keys will come."""
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """Wait for keys; return their names, such as "2", "x", "up" or "space".
+        """Wait for keys of the player; return their names, such as "2", "x", "up" or "space".
 
         Args:
             timeout_s: longest wait [s].
@@ -57,7 +57,7 @@ class KeySource(Protocol):
         """
 
     def take_said(self) -> list[Phrase]:
-        """Return what was wrong with the input since the last call, as sentences."""
+        """Return what was wrong with the keys that came since the last call, as sentences."""
 
 
 class KeyDecoder:
@@ -97,7 +97,7 @@ def key_name(character: str) -> str | None:
 
 @contextmanager
 def open_keys() -> Iterator[KeySource]:
-    """Read keys from standard input: a terminal's as they are pressed, or a script from a pipe."""
+    """Read keys from standard input: as they are pressed at a terminal, or a script in a pipe."""
     if not sys.stdin.isatty():
         yield PipeKeys(sys.stdin.fileno())
     elif sys.platform == "win32":
@@ -137,7 +137,7 @@ class _PosixKeys:
 if sys.platform == "win32":
 
     class _WindowsKeys:
-        """Keys of a Windows console."""
+        """Keys that are pressed in a Windows console."""
 
         ended = False
 

@@ -24,7 +24,7 @@ PHASE_STYLES = {
 
 
 class LineView:
-    """Draws one line, in place: phase, clock, teams, score and the newest event."""
+    """Draws the match as one line, always in the same place: phase, clock, teams, score, event."""
 
     events_above = True
 
@@ -32,7 +32,7 @@ class LineView:
         self._last = ""
 
     def draw(self, view: Spectator, events: Sequence[Event], silent_s: float) -> RenderableType:
-        """Draw the present state.
+        """Draw how the match stands now.
 
         Args:
             view: the court.
@@ -74,5 +74,5 @@ def status_line(frame: Frame, sheet: Sheet) -> Text:
 
 
 def event_columns(event: Event, sheet: Sheet) -> tuple[Text, Text]:
-    """Return the time and the text of an event, as in the log."""
+    """Return the time and the text of an event, for two columns of a list of events."""
     return Text(f"{words.event_clock(event, sheet):>7}  ", "dim"), Text(render(event.said))

@@ -30,7 +30,7 @@ class PipeKeys:
         return self._read_all and self._script.empty
 
     def read(self, timeout_s: float, playing_s: float, playing: bool) -> list[str]:
-        """Return the keys that are due; see `keys.KeySource`."""
+        """Return the keys of the script whose time has come; see `keys.KeySource`."""
         try:
             while True:
                 line = self._lines.get(timeout=timeout_s)
@@ -49,7 +49,7 @@ class PipeKeys:
 
 
 def _read_lines(descriptor: int, lines: "queue.SimpleQueue[str | None]") -> None:
-    """Put each line into the queue, and None after the last."""
+    """Put each line of the pipe into the queue, and None after the last line."""
     rest = b""
     while data := os.read(descriptor, _READ_BYTES):
         *whole, rest = (rest + data).split(b"\n")

@@ -70,7 +70,7 @@ def reply_dict(reply: DecisionReply) -> dict[str, Any]:
 
 
 def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
-    """Turn an outlook into plain values; its events become those of `event_dict`."""
+    """Turn an outlook into plain values, and each of its events as `event_dict` does."""
     plain: dict[str, Any] = msgspec.to_builtins(outlook)
     del plain["clock_ticks"]
     return plain | {
@@ -81,7 +81,7 @@ def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
 
 
 def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:
-    """Return the state of each marker by its name."""
+    """Return the state of each marker, by the marker's name."""
     if 4 * len(frame.markers) < len(sheet.markers):
         return {}
     states = unpack_states(frame.markers, len(sheet.markers))

@@ -1,4 +1,4 @@
-"""Holds a seat from a terminal: reads keys and draws the match (rules 3)."""
+"""Lets a contestant play at a terminal: reads the keys and draws the match."""
 
 import time
 from collections import deque
@@ -37,7 +37,7 @@ _LEVEL_NAMES = {Level.POSTURE: "a", Level.LOCOMOTION: "b"}
 
 
 class TerminalPlay:
-    """One contestant at a terminal.
+    """A contestant's play at a terminal: keys are read and the match is drawn.
 
     Args:
         controller: holds the seat.
@@ -101,7 +101,7 @@ class TerminalPlay:
         return False
 
     def _step(self) -> list[Text]:
-        """Read keys, frames and events once; return the lines to print above the live picture."""
+        """Read the keys, frames and events that came; return lines to print above the picture."""
         controller = self._controller
         frame = self._view.frame
         playing = frame is not None and frame.phase == Phase.PLAYING
@@ -126,7 +126,7 @@ class TerminalPlay:
         return lines
 
     def _press(self, key: str) -> None:
-        """Do what a key of the terminal stands for."""
+        """Do what a key means that the contestant has pressed."""
         self._message = ""
         try:
             if key.isdecimal() and len(key) == 1:
@@ -155,7 +155,7 @@ class TerminalPlay:
             self._say(say("terminal.arrows"))
 
     def _change_level(self) -> None:
-        """Change to the next open level; this sends nothing to the court."""
+        """Let the digits mean the next level that this match allows; send nothing to the court."""
         levels = [Level(level) for level in self._view.sheet.levels]
         if levels == [self._level]:
             self._say(say("terminal.only-level", level=_LEVEL_NAMES[self._level]))
@@ -261,7 +261,7 @@ class TerminalPlay:
         return Text(state, "cyan") if state else Text(render(say("terminal.help")), "dim")
 
     def _leave(self) -> None:
-        """Give the seat up, and write Pos-data.txt if the contestant asked for it."""
+        """Give the seat up, and write the robot's motion (Pos-data.txt) if the contestant asked."""
         controller = self._controller
         if self._view.silent_s(time.monotonic()) < 1.0 and controller.hold is Hold.HELD:
             try:
@@ -283,7 +283,7 @@ class TerminalPlay:
 
 
 def keys_table(controller: Controller) -> Table:
-    """Return a table of the keys of this seat, and of their effects."""
+    """Return a table of the keys that this seat may press, and of their effects."""
     sheet = controller.view.sheet
     seat = sheet.seats[controller.index]
     table = Table(show_header=False, box=None, padding=(0, 2))

@@ -16,18 +16,18 @@ def phase_name(phase: Phase) -> str:
 
 
 def clock(ticks: int) -> str:
-    """Format a time of the match clock, rounded up to a second, such as "2:05"."""
+    """Format a time in ticks, rounded up to whole seconds, such as "2:05"."""
     seconds = -(-max(0, ticks) // BEATS_PER_S)
     return f"{seconds // 60}:{seconds % 60:02d}"
 
 
 def match_clock(frame: Frame, sheet: Sheet) -> str:
-    """Format the time left, or the time played if the match has no time limit."""
+    """Format the match's time left, or the time played if it has no time limit."""
     return clock(_shown_ticks(frame.clock_ticks, sheet))
 
 
 def event_clock(event: Event, sheet: Sheet) -> str:
-    """Format the time that the clock showed at an event, with tenths."""
+    """Format the time that the match's clock showed at an event, with tenths."""
     return log_clock(_shown_ticks(event.clock_ticks, sheet))
 
 
@@ -65,7 +65,7 @@ def phase_hint(frame: Frame, sheet: Sheet) -> str:
 
 
 def score(frame: Frame) -> str:
-    """Format the score, such as "18 : 20"."""
+    """Format the points of the seats, such as "18 : 20"."""
     return " : ".join(str(seat.score) for seat in frame.seats)
 
 
@@ -116,7 +116,7 @@ def place(frame: Frame, sheet: Sheet, seat: str) -> str:
 
 
 def seat_state(seat: SeatFrame) -> str:
-    """Return why a seat's keys do nothing now, or that the seat is silent; "" in other cases."""
+    """Return why a seat's keys have no effect now, or that the seat is silent; "": neither."""
     flags = SeatFlag(seat.flags)
     if SeatFlag.FROZEN in flags:
         return render(say("terminal.frozen", seconds=_wait_s(seat)))

@@ -1,4 +1,4 @@
-"""Chooses the second picture: a swing at another court than the one on air. Pure."""
+"""Chooses what the second picture shows: a swing at another court than the one on air. Pure."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ _STAYS_S = 2.5
 
 
 class Aside:
-    """Chooses the court in the second picture.
+    """Chooses the court that the second picture shows.
 
     The second picture shows moments for which a cut is not worth it or not allowed. It appears at
     the moment, disappears soon after, and never shows the court on air. A change to the next moment
@@ -30,7 +30,7 @@ class Aside:
     def look(
         self, shown_s: float, on_air: str, there: Sequence[str], best: Sequence[LiveMoment]
     ) -> LiveMoment | None:
-        """Choose the moment in the second picture.
+        """Choose the moment that the second picture shows now.
 
         Args:
             shown_s: the time that is shown; it never goes back [s].
@@ -56,7 +56,7 @@ class Aside:
         return now
 
     def _goes_on(self, shown_s: float, now: LiveMoment, next_: LiveMoment) -> bool:
-        """Return whether the second picture should change from a moment to another one."""
+        """Return whether the second picture should change from the moment `now` to `next_`."""
         if now.court == next_.court:
             return next_.at_s > now.at_s
         has_been = now.at_s <= shown_s or now.points < next_.points

@@ -1,4 +1,4 @@
-"""What the director sees of a court at one time. Pure."""
+"""What the director knows of a court at one time. Pure."""
 
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ OVER = (Phase.FINISHED, Phase.OFFICIAL, Phase.VOID)
 
 
 class CourtNow(NamedTuple):
-    """How a court stands at one time."""
+    """How the match at a court stands at one time."""
 
     name: str
     match: str
@@ -34,12 +34,12 @@ class CourtNow(NamedTuple):
 
     @property
     def ahead(self) -> int:
-        """Points by which the first seat leads; negative: the second seat leads."""
+        """How many points the first seat is ahead; negative: the second seat leads."""
         return self.scores[0] - self.scores[1] if len(self.scores) > 1 else 0
 
     @property
     def is_close(self) -> bool:
-        """Whether the difference is at most a fifth of all points."""
+        """Whether the seats' points differ by at most a fifth of all points."""
         return len(self.scores) > 1 and abs(self.ahead) <= _CLOSE * sum(map(abs, self.scores))
 
     @property
@@ -58,7 +58,7 @@ class CourtNow(NamedTuple):
 
     @property
     def is_closing(self) -> bool:
-        """Whether these are the last 30 s of a close match."""
+        """Whether the last 30 s of a close match are being played."""
         return (
             self.is_played and self.left_s is not None and self.left_s <= LAST_S and self.is_close
         )

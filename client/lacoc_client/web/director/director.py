@@ -1,4 +1,4 @@
-"""Chooses the court that is on air. Pure: the same looks give the same cuts."""
+"""Chooses the court that is on air. Pure: from the same matches it makes the same cuts."""
 
 from bisect import bisect_left
 from collections import deque
@@ -34,7 +34,7 @@ match is played. gone: the court shown before has vanished.
 
 
 class OnAir(NamedTuple):
-    """The court that is on air."""
+    """The court that is on air, since when, and why."""
 
     court: str
     why: Why
@@ -71,7 +71,7 @@ class Director:
         """The court on air, its match, and since when nothing has been played there [s]."""
 
     def look(self, now_s: float, courts: Sequence[CourtNow]) -> OnAir | None:
-        """Take a look at all courts, and choose the court on air.
+        """Note how all matches stand now, and choose the court on air.
 
         Args:
             now_s: the time, by a clock that never goes back [s].
@@ -113,13 +113,13 @@ class Director:
             self._moments.popleft()
 
     def _coming(self, shown_s: float) -> list[LiveMoment]:
-        """Return the moments at all courts, without moments that are over."""
+        """Return the moments at all courts that are not over at the time `shown_s` [s]."""
         return [one for one in self._moments if one.at_s >= shown_s - _LATE_S]
 
     def _next(
         self, shown_s: float, shown: Mapping[str, CourtNow], shot: OnAir, due: Sequence[LiveMoment]
     ) -> OnAir | None:
-        """Return what to cut to now, a moment or a court with play; None: stay at this court."""
+        """Return the court to cut to now, for a moment or because it has play; None: do not cut."""
         now = shown.get(shot.court)
         if now is None:
             return OnAir(self._richest(shown_s, shown), "gone", shown_s) if shown else None
@@ -139,12 +139,12 @@ class Director:
         return None
 
     def _note_empty(self, shown_s: float, now: CourtNow | None) -> None:
-        """Note since when nothing is played at the court on air."""
+        """Note since when no match has been played at the court on air."""
         if now is not None and (now.is_played or self._empty[:2] != (now.name, now.match)):
             self._empty = (now.name, now.match, shown_s)
 
     def _moment(self, shown_s: float, on_air: str, due: Sequence[LiveMoment]) -> LiveMoment | None:
-        """Return the moment at another court that is worth a cut now; None: there is none."""
+        """Return the moment, at another court than `on_air`, that is worth a cut now, if any."""
         others = [one for one in due if one.court != on_air]
         if not others:
             return None
@@ -154,14 +154,17 @@ class Director:
         return best if is_worth_it(on_air, best, later, self._cuts, prices, self._locked) else None
 
     def _best(self, due: Sequence[LiveMoment]) -> list[LiveMoment]:
-        """Return those of the moments that are good enough for the second picture."""
+        """Return those of the moments in `due` that are good enough for the second picture."""
         if not due:
             return []
         least = Prices(self._moments).least(ASIDE_SHARE)
         return [one for one in due if one.points >= least and one.why in ASIDE_WHYS]
 
     def _locked(self, court: str, at_s: float) -> bool:
-        """Return whether at a time a cut away is forbidden: a close end, or a fresh result."""
+        """Return whether the director must not cut away from a court at a time.
+
+        It must not during the last 30 s of a close match, nor while a result is fresh.
+        """
         now = self._at(court, at_s)
         if now is None or not now.is_over:
             return now is not None and now.is_closing
@@ -169,7 +172,7 @@ class Director:
         return before is not None and before.is_played
 
     def _at(self, court: str, at_s: float) -> CourtNow | None:
-        """Return how a court stood at a time, from the first look at or after it."""
+        """Return how a court stood at a time: as the first look at or after this time saw it."""
         index = bisect_left(self._looks, at_s, key=lambda look: look[0])
         return self._looks[min(index, len(self._looks) - 1)][1].get(court)
 

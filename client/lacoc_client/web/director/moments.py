@@ -22,7 +22,7 @@ begins.
 
 
 class LiveMoment(NamedTuple):
-    """A moment that is worth seeing."""
+    """A moment of a match that is worth seeing."""
 
     at_s: float
     court: str
@@ -32,7 +32,7 @@ class LiveMoment(NamedTuple):
 
 
 class Track:
-    """Follows one court, and finds the moments at it."""
+    """Follows the match at one court, and finds the moments in it."""
 
     def __init__(self, now: CourtNow) -> None:
         self._now = now
@@ -40,7 +40,7 @@ class Track:
         """Sign of the last difference in points that was not 0."""
 
     def see(self, now_s: float, now: CourtNow) -> Iterator[LiveMoment]:
-        """Compare the court with the last look, and yield the moments in between.
+        """Compare how the court stands with the last call, and yield the moments in between.
 
         Args:
             now_s: the time of the look [s].

@@ -28,7 +28,7 @@ _MOST = 8
 
 
 def cuts_left(cuts: Sequence[float], at_s: float) -> int:
-    """Return how many cuts are left in the minute that ends at a time.
+    """Return how many more cuts are allowed in the minute that ends at a time.
 
     Args:
         cuts: the times of earlier cuts [s].
@@ -43,12 +43,12 @@ def may_cut(cuts: Sequence[float], at_s: float) -> bool:
 
 
 def worth(points: float) -> float:
-    """Return what it is worth to show a moment of so many points: their cube."""
+    """Return how much it is worth to show a moment of so many points: the cube of the points."""
     return points**3
 
 
 class Prices:
-    """What moments and cuts are worth, compared with all moments of the last minutes.
+    """Says what moments are worth and what cuts cost, from all moments of the last minutes.
 
     Args:
         known: the moments of the last minutes at all courts.
@@ -64,7 +64,7 @@ class Prices:
         return worth(moment.points) if moment.points >= self._least else 0.0
 
     def cost(self, left: int) -> float:
-        """Return what a cut costs while `left` cuts are left, 1 to `CUTS_MOST`."""
+        """Return what a cut costs while `left` cuts of the minute are left, 1 to `CUTS_MOST`."""
         return self._costs[left - 1]
 
     def least(self, share: float) -> float:
@@ -82,7 +82,7 @@ def is_worth_it(
     prices: Prices,
     locked: Callable[[str, float], bool],
 ) -> bool:
-    """Return whether to cut to a moment now, or to stay and cut to a later one.
+    """Return whether to cut to a moment now; else it is better to save the cut for a later moment.
 
     Args:
         on_air: the court on air.

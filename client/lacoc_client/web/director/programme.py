@@ -40,18 +40,18 @@ class Channel:
         self._late.add(viewer)
 
     def has(self, viewer: Viewer) -> bool:
-        """Return whether a page sees this picture."""
+        """Return whether a page is one of those that see this picture."""
         return viewer in self._viewers
 
     def remove(self, viewer: Viewer) -> None:
-        """Let a page no longer see this picture."""
+        """Send this picture to a page no longer."""
         if viewer in self._viewers:
             assert self._late is not None
             del self._viewers[viewer]
             self._late.audience.remove(viewer)
 
     def show(self, late: LateFeed, told: bytes) -> None:
-        """Show a court from now on.
+        """Show a court in this picture from now on.
 
         Args:
             late: the late feed of the court.
@@ -90,13 +90,13 @@ class Programme:
         self._running: asyncio.Task[None] | None = None
 
     def add(self, viewer: Viewer, aside: bool) -> None:
-        """Let a page follow the first picture, or (`aside`) the second one."""
+        """Let a page follow the director's first picture, or (`aside`) the second one."""
         if self._running is None:
             self._begin()
         (self._second if aside else self._first).add(viewer)
 
     def remove(self, viewer: Viewer) -> None:
-        """Let a page no longer follow the director."""
+        """Send the director's pictures to a page no longer."""
         self._first.remove(viewer)
         self._second.remove(viewer)
 
@@ -108,7 +108,7 @@ class Programme:
         return None
 
     def audience(self, court: str) -> Audience | None:
-        """Return the pages to which this court is shown late; None: it has no late feed yet.
+        """Return the pages that see this court `AHEAD_S` late; None: it is not shown late yet.
 
         Any thread may call it.
         """
@@ -125,7 +125,7 @@ class Programme:
         return sum(late.audience.others(can_act, but) for late in list(self._late.values()))
 
     def stop(self) -> None:
-        """Stop choosing courts and passing messages on."""
+        """Stop the director: choose no more courts, and send the pages nothing more."""
         if self._running is not None:
             self._running.cancel()
 

@@ -1,4 +1,4 @@
-"""The newest result of each court, shown as late as everything else. Pure."""
+"""The newest result of each court, shown as late as the director shows matches. Pure."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ _SHOWN = 6
 
 
 class ShownResult(msgspec.Struct, frozen=True):
-    """The result of a match, as it is shown."""
+    """The result of a match, as pages show it."""
 
     court: str
     match: str
@@ -46,7 +46,7 @@ class Results:
     def see(
         self, now_s: float, over: Sequence[ShownResult], going: Sequence[tuple[str, str]]
     ) -> None:
-        """Note which matches are over and which are not.
+        """Note which matches are over now and which are not.
 
         Args:
             now_s: the time, by a clock that never goes back [s].
@@ -67,7 +67,7 @@ class Results:
             self._later.append((now_s + self._behind_s, after))
 
     def shown(self, now_s: float) -> tuple[ShownResult, ...]:
-        """Return the results that are shown at a time, the newest first."""
+        """Return the results that pages show at a time, the newest first."""
         while self._later and self._later[0][0] <= now_s:
             self._shown = self._later.popleft()[1]
         return self._shown[-_SHOWN:][::-1]

@@ -22,7 +22,7 @@ _LAST_GAME = 1.25
 
 
 def stake(fixture: Phrase | None) -> float:
-    """Return the weight of a match.
+    """Return how important a match is in its contest, as a weight.
 
     Args:
         fixture: the name of the match in its contest (`fixture.*`); None: it is in no contest.

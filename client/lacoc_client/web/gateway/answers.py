@@ -1,4 +1,4 @@
-"""Answers the requests of a page: at once, later, or from another thread."""
+"""Sends a page the answers to its requests: at once, later, or from another thread."""
 
 import asyncio
 import time
@@ -18,7 +18,7 @@ _LOGGED_HZ, _LOGGED_BURST = 1.0, 10
 
 
 class Answers:
-    """Sends replies and refusals; used from the event loop only.
+    """Sends a page the replies and refusals; used from the event loop only.
 
     Args:
         viewer: the page.
@@ -32,18 +32,18 @@ class Answers:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def reply(self, to: int, value: Any) -> None:
-        """Answer a request."""
+        """Send the reply to the request with the number `to`."""
         self._viewer.send(wire.reply(to, value))
 
     def refuse(self, to: int, error: UserError | FileRefused) -> None:
-        """Answer that a request was refused, and why."""
+        """Tell the page that its request with the number `to` was refused, and why."""
         self._viewer.send(wire.refusal(to, error))
         # The sentences contain no token. A page gets one refusal a second into the log, on average.
         if self._logged.take(1, time.monotonic()):
             self._log(f"Refused: {error}", "refused")
 
     def later(self, to: int, work: Coroutine[Any, Any, Any]) -> None:
-        """Answer with the result of a coroutine when it is done.
+        """Send a page the result of a coroutine as the reply, when the coroutine is done.
 
         The page's next requests do not wait for it.
 
@@ -79,7 +79,7 @@ class Answers:
         return answer
 
     def stop(self) -> None:
-        """Cancel the open requests, because the page has gone."""
+        """Cancel the page's requests that are not answered yet, because the page has gone."""
         for task in self._tasks:
             task.cancel()
 
@@ -87,7 +87,7 @@ class Answers:
 def in_future(
     future: "asyncio.Future[Any]", value: Any, error: UserError | FileRefused | None
 ) -> None:
-    """Set the result or the error of a future; any thread may call this."""
+    """Set the result of a future, or its error if there is one; any thread may call this."""
 
     def settle() -> None:
         if future.done():

@@ -6,13 +6,13 @@ from lacoc_client.web.gateway.viewer import Frames, Viewer
 
 
 class Listener(Protocol):
-    """Receives everything that a court sends, as a page does, but is not a page."""
+    """A part of the program that receives all messages that the pages of one court get."""
 
     def send(self, framed: bytes) -> None:
-        """Take a message that must arrive."""
+        """Take a message that no page may miss, such as an event."""
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Take a message that may be left out."""
+        """Take a message that slow pages may miss, such as the court's health."""
 
     def offer(self, framed: bytes, now_s: float) -> None:
         """Take a frame that arrived at the time `now_s` [s]."""
@@ -31,15 +31,15 @@ class Audience:
         return sum(one.is_page for one in self._viewers)
 
     def add(self, viewer: Viewer) -> None:
-        """Add a page, which receives everything from now on."""
+        """Add a page; it receives everything that the court sends from now on."""
         self._viewers[viewer] = None
 
     def tap(self, listener: Listener) -> None:
-        """Add a listener, which receives everything from now on and does not count as a page."""
+        """Add a listener; it receives what pages receive, but does not count as a page."""
         self._listeners.append(listener)
 
     def remove(self, viewer: Viewer) -> None:
-        """Remove a page, and keep its frame counts."""
+        """Remove a page, but keep the counts of its frames for `frames`."""
         if viewer in self._viewers:
             del self._viewers[viewer]
             self._gone.sent += viewer.frames.sent
@@ -56,12 +56,12 @@ class Audience:
         return sum(one.can_act == can_act for one in places)
 
     def frames(self) -> Frames:
-        """Return the frame counts of all pages; may be called from any thread."""
+        """Return how many frames all pages together were sent and missed; any thread may call."""
         counts = [self._gone, *(viewer.frames for viewer in list(self._viewers))]
         return Frames(sum(one.sent for one in counts), sum(one.dropped for one in counts))
 
     def send(self, *messages: bytes) -> None:
-        """Send messages that must arrive, in order."""
+        """Send all pages and listeners messages that none may miss, in this order."""
         for one in (*self._viewers, *self._listeners):
             for framed in messages:
                 one.send(framed)
@@ -72,20 +72,20 @@ class Audience:
             viewer.send_if_fast(framed)
 
     def send_own(self, framed: bytes) -> None:
-        """Send a message that must arrive to all pages of the person who started the gateway."""
+        """Send a message to all pages of the person who started the gateway, even to slow ones."""
         for viewer in self._viewers:
             if viewer.is_own:
                 viewer.send(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message to the pages that keep up.
+        """Send a message to all pages that are not too slow for it.
 
-        A slow page gets a later message of this kind.
+        A page that is too slow gets a later message of this kind.
         """
         for one in (*self._viewers, *self._listeners):
             one.send_if_fast(framed)
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """Send a frame to the pages for which one is due."""
+        """Send a frame to each page for which it is time to get one, by the page's frame rate."""
         for one in (*self._viewers, *self._listeners):
             one.offer(framed, now_s)

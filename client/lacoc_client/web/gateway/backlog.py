@@ -1,4 +1,4 @@
-"""Keeps the messages that a new page needs: the newest of each kind, and all events."""
+"""Keeps the messages that a page needs first: the newest of each kind, and all events."""
 
 import msgspec
 
@@ -32,7 +32,7 @@ class _ProgrammeHead(msgspec.Struct):
 
 
 class Backlog:
-    """Keeps, of all messages that were sent to pages, those that a new page needs."""
+    """Keeps, of all messages about a court, those that a page needs which begins to watch it."""
 
     def __init__(self) -> None:
         self._newest: dict[MessageKind, bytes] = {}
@@ -41,7 +41,7 @@ class Backlog:
         self._court = ""
 
     def take(self, framed: bytes) -> None:
-        """Note a message that was sent to pages."""
+        """Note a message that was sent to the pages that watch."""
         kind, payload = wire.opened(framed)
         if kind is MessageKind.EVENT:
             self._events[framed] = None
@@ -62,7 +62,7 @@ class Backlog:
                 self._newest = {k: v for k, v in self._newest.items() if k in _OF_ALL_COURTS}
 
     def all(self) -> list[bytes]:
-        """Return the messages in the order in which a page needs them."""
+        """Return the kept messages in the order in which a new page needs them."""
         kept = self._newest
         before = [kept[kind] for kind in _BEFORE_EVENTS if kind in kept]
         after = [kept[kind] for kind in _AFTER_EVENTS if kind in kept]

@@ -1,4 +1,4 @@
-"""Reads the body of a request, up to a greatest length."""
+"""Reads the body of an HTTP request, up to a greatest length."""
 
 from starlette.requests import Request
 
@@ -6,7 +6,7 @@ from lacoc_client.web.gateway.wire import too_long
 
 
 async def read_body(request: Request, most: int) -> bytes:
-    """Read the body of a request.
+    """Read the body of an HTTP request.
 
     Args:
         request: the request.

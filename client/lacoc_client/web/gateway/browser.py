@@ -1,4 +1,4 @@
-"""Opens a page in this person's browser, without a secret in a command line.
+"""Opens a page in the user's browser, without a secret in a command line.
 
 Every user of a machine can read the command lines of all programs, and a browser gets the address
 of a page in its command line. So the address with the page key is written into a file that only
@@ -25,7 +25,7 @@ _LEADS_ON = (
 
 @contextmanager
 def unseen(address: str) -> Iterator[str]:
-    """Yield an address that leads to `address` without containing it; valid until the block ends.
+    """Yield an address that leads to `address` without containing it, until the `with` block ends.
 
     If no file can be written, yield `address` itself.
 
@@ -56,7 +56,7 @@ def _private(name: str, flags: int) -> int:
 
 
 def open_browser(address: str) -> bool:
-    """Show a page in this person's browser; return False if no browser could be opened."""
+    """Show a page in the user's browser; return False if no browser could be opened."""
     if sys.platform.startswith("linux") and not any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     ):

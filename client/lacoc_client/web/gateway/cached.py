@@ -1,4 +1,4 @@
-"""Answers that a browser, or a proxy on the way, may keep; each answer says for how long."""
+"""HTTP answers that a browser, or a proxy on the way, may keep; each says for how long."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -23,7 +23,7 @@ _packed = lru_cache(maxsize=16)(page_file)
 
 
 def file_response(request: Request, file: PageFile, cache: str) -> Response:
-    """Answer with a file, or that it has not changed if the browser has this version.
+    """Answer with a file, or with "not modified" if the browser has this version of it already.
 
     Args:
         request: the request.
@@ -42,13 +42,13 @@ def file_response(request: Request, file: PageFile, cache: str) -> Response:
 
 
 def json_response(request: Request, found: Any) -> Response:
-    """Answer with JSON that changes all the time and that many pages ask for."""
+    """Answer with JSON that changes often and that many pages ask for; keep it for a second."""
     file = _packed(msgspec.json.encode(found), "application/json")
     return file_response(request, file, A_SECOND)
 
 
 def large_response(request: Request, path: Path, media_type: str, cache: str) -> Response:
-    """Answer as `file_response` does, with a file that is too large for this program's memory.
+    """Answer as `file_response` does, but read the file piece by piece, because it is large.
 
     Raises:
         OSError: if the file has gone.

@@ -1,4 +1,4 @@
-"""The parts that clients read of a contest's sheet; the office writes the sheet again and again."""
+"""The parts of a contest's sheet that clients read; the office writes the sheet again and again."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ NAME = "contest.json"
 
 
 class SheetGame(msgspec.Struct, frozen=True):
-    """A game of a match that was played, also a void one."""
+    """A game that was played in a match of the contest; also a game that was declared void."""
 
     record: str = ""
     """File name of the game's record; "": it has no record."""
@@ -17,7 +17,7 @@ class SheetGame(msgspec.Struct, frozen=True):
 
 
 class SheetMatch(msgspec.Struct, frozen=True):
-    """A match, with the games of it that were played."""
+    """A match of the contest, with those of its games that were played."""
 
     games: tuple[SheetGame, ...] = ()
 
@@ -29,7 +29,7 @@ class SheetStage(msgspec.Struct, frozen=True):
 
 
 class SheetDay(msgspec.Struct, frozen=True):
-    """Whether games are called now, or the contest is paused."""
+    """Whether the office gives games to courts now, or the contest is paused."""
 
     paused: bool = False
     until_ms: int = 0
@@ -43,7 +43,7 @@ class SheetLine(msgspec.Struct, frozen=True):
 
 
 class PublishedSheet(msgspec.Struct, frozen=True):
-    """The part of a sheet that clients read."""
+    """The part of a contest's sheet that clients read."""
 
     stages: tuple[SheetStage, ...] = ()
     day: SheetDay = SheetDay()
@@ -51,12 +51,12 @@ class PublishedSheet(msgspec.Struct, frozen=True):
 
     @property
     def games(self) -> list[SheetGame]:
-        """All games of all stages, in the order of the sheet."""
+        """All games of all stages of the contest, in the order of the sheet."""
         return [game for stage in self.stages for match in stage.matches for game in match.games]
 
 
 def read(path: Path) -> PublishedSheet:
-    """Read a sheet.
+    """Read the sheet of a contest from its file.
 
     Raises:
         OSError: if the file can't be read.
@@ -66,7 +66,7 @@ def read(path: Path) -> PublishedSheet:
 
 
 class NewestSheet:
-    """Reads a sheet whenever it has changed.
+    """Reads the sheet of a contest again whenever its file has changed.
 
     Args:
         path: the sheet, which need not exist yet.
@@ -77,7 +77,7 @@ class NewestSheet:
         self._read: tuple[int, PublishedSheet] = (0, PublishedSheet())
 
     def take(self) -> PublishedSheet | None:
-        """Return the newest sheet; None: there is no sheet, or it can't be read now."""
+        """Return the contest's newest sheet; None: it has none, or it can't be read now."""
         try:
             version = self._path.stat().st_mtime_ns
             if self._read[0] != version:

@@ -28,9 +28,9 @@ Decisions and other requests run on other threads, so they never wait for these.
 
 
 class Courts:
-    """The feed and the referees of each court of a gateway.
+    """The courts of a gateway: for each one its feed, and its pages that act for referees.
 
-    Both are made when they are first needed.
+    The feed of a court is made when somebody first needs the court.
 
     Args:
         home: the gateway's settings.
@@ -60,7 +60,9 @@ class Courts:
         the way answered the others."""
 
     def find(self, name: str | None) -> tuple[CourtFeed, Referees]:
-        """Return the started feed and the referees of a court; without a name, of the first court.
+        """Return the feed of a court, and the object that knows which pages act for its referees.
+
+        Without a name it is the first court. The feed is started if it was not.
 
         Raises:
             UserError: if this gateway has no such court.
@@ -77,10 +79,7 @@ class Courts:
 
     @property
     def programme(self) -> "Programme":
-        """The two pictures of the director.
-
-        They begin with the first page that follows the director.
-        """
+        """The director's two pictures; they are made when the first page follows the director."""
         if self._programme is None:
             from lacoc_client.web.director.programme import Programme  # no court needs it
 
@@ -88,24 +87,25 @@ class Courts:
         return self._programme
 
     def _all(self) -> list[CourtFeed]:
-        """Return the started feeds of all courts of this gateway."""
+        """Return the feeds of all courts of this gateway, and start those that are not started."""
         return [self.find(name)[0] for name in list(self.home.courts)]
 
     @property
     def feeds(self) -> list[CourtFeed]:
-        """The feeds of all courts that were needed so far; may be read from any thread."""
+        """The feeds of all courts that somebody has watched or played at; any thread may read."""
         return [feed for feed, _ in list(self._feeds.values())]
 
     def audiences(self, feed: CourtFeed) -> list[Audience]:
-        """Return the groups of pages that see a court: at once, and late through the director.
+        """Return the pages that see a court, in one or two groups.
 
-        Any thread may call it.
+        The first group sees it at once, the second some seconds late, because it follows the
+        director. Any thread may call it.
         """
         followers = None if self._programme is None else self._programme.audience(feed.court)
         return [feed.audience] if followers is None else [feed.audience, followers]
 
     def over(self) -> list[str]:
-        """List the ids of matches that are over but still at their courts.
+        """List the ids of matches that are over, at courts that have not begun another match.
 
         Any thread may call it.
         """
@@ -122,7 +122,7 @@ class Courts:
         return token is not None and digest(token) in self._accepted
 
     def threads_for(self, token: str) -> Threads:
-        """Return the threads that show a token to a court.
+        """Return the threads on which a court is asked about a token.
 
         So somebody with an accepted token, who comes back, does not wait behind people who try
         tokens.
@@ -130,7 +130,7 @@ class Courts:
         return self.threads if self.has_accepted(token) else self.strangers
 
     def owns(self, key: str | None) -> bool:
-        """Return whether a page key is this gateway's own."""
+        """Return whether a key that a page shows is this gateway's page key."""
         return key is not None and hmac.compare_digest(
             key.encode("utf-8", "surrogatepass"), self.home.key.encode()
         )
@@ -140,7 +140,7 @@ class Courts:
         return self.owns(secret) or self.has_accepted(secret)
 
     def why_full(self, viewer: Viewer, claims: bool = False) -> Phrase | None:
-        """Say why there is no room for a page; None if there is room.
+        """Return why there is no room for a page; None if there is room.
 
         Pages whose token a court has accepted have a limit of their own. So no crowd of spectators
         can take their places. A page whose token no court has accepted yet may come even if all
@@ -162,11 +162,11 @@ class Courts:
         return say("gateway.full", most=most)
 
     def watching(self) -> int:
-        """Count the pages that only watch."""
+        """Return how many pages only watch."""
         return self._others(False)
 
     def free_places(self) -> int:
-        """Count the places that are free for pages that only watch."""
+        """Return how many more pages that only watch may come."""
         return max(0, self.home.viewers_most - self.watching())
 
     def _others(self, can_act: bool, but: Viewer | None = None) -> int:
@@ -174,7 +174,7 @@ class Courts:
         return others + (self._programme.others(can_act, but) if self._programme else 0)
 
     def dismiss(self, viewer: Viewer) -> None:
-        """Send a page nothing any more."""
+        """Remove a page that has gone from all feeds and from the list of pages."""
         self.pages.discard(viewer)
         for feed in self.feeds:
             feed.audience.remove(viewer)
@@ -182,10 +182,10 @@ class Courts:
             self._programme.remove(viewer)
 
     async def watch_files(self) -> None:
-        """Watch the files on this machine, and tell the pages what has changed.
+        """Watch the user's gait files and the contest's sheet, and tell pages what has changed.
 
-        Changes of a person's own files go to that person's pages. A new line in the contest's sheet
-        goes to all pages.
+        Changes of the gait files go to the pages of the person who started the gateway. A new
+        message of the organiser in the sheet goes to all pages.
         """
         own = self.home.prefill.files if self.home.prefill is not None else None
         while own is not None or self.home.sheet is not None:
@@ -198,7 +198,7 @@ class Courts:
                     page.send(self.notice.message)
 
     async def close(self) -> None:
-        """Close all connections."""
+        """Close the connections to all courts."""
         if self._programme is not None:
             self._programme.stop()
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))

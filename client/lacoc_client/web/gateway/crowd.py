@@ -1,4 +1,4 @@
-"""Counts how many people watch and what they cheer, without names."""
+"""Counts how many pages watch and with which symbols they cheer, without names."""
 
 import asyncio
 from collections import Counter, deque
@@ -23,7 +23,7 @@ _SAYS_AGAIN = 5
 
 
 class Crowd:
-    """Counts the people who watch; used from the event loop only.
+    """Counts the people who watch, and their cheers; used from the event loop only.
 
     Args:
         courts: the courts of the gateway.
@@ -39,12 +39,12 @@ class Crowd:
         """Which share of the pages that fetch pieces is asked to report, 0 to 1."""
 
     def cheer(self, audience: Audience, symbol: int, count: float = 1) -> None:
-        """Count a cheer of somebody who watches a court; do nothing if cheers are switched off."""
+        """Count a cheer from a page that watches a court, unless cheers are switched off."""
         if self._courts.home.cheers and 0 <= symbol < SYMBOLS:
             self._cheers.setdefault(audience, Counter())[symbol] += round(count)
 
     def hear(self, audience: Audience, cheers: list[int]) -> None:
-        """Count the report of a page that fetches the match in pieces.
+        """Count the report of a page that watches the match in pieces.
 
         The report also stands for pages that were not asked to report.
 
@@ -62,7 +62,7 @@ class Crowd:
         return self._courts.watching() + round(sum(self._heard))
 
     async def tell(self) -> None:
-        """Tell all pages every second how many watch and what was cheered.
+        """Tell all pages every second how many watch, and how often each cheer came.
 
         Runs until it is cancelled.
         """
@@ -77,7 +77,7 @@ class Crowd:
             self.pass_second()
 
     def say(self, audience: Audience, watching: int, *, again: bool = False) -> None:
-        """Tell some pages what was cheered in this second, and how many watch.
+        """Tell some pages how often each cheer came in this second, and how many pages watch.
 
         Args:
             audience: the pages.
@@ -92,7 +92,7 @@ class Crowd:
             audience.tell(message)
 
     def pass_second(self) -> None:
-        """End this second: forget its cheers, and compute the share of pages that should report."""
+        """Forget the cheers of this second, and compute the share of pages that should report."""
         self._cheers.clear()
         self.share = min(1.0, HEARD_MOST / max(1.0, sum(self._heard)))
         self._heard.append(0.0)

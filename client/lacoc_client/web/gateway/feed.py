@@ -1,4 +1,4 @@
-"""Receives what a court sends, once, and passes it to all pages that watch it."""
+"""Receives each message of a court once, and passes it on to all pages that watch the court."""
 
 import asyncio
 import contextlib
@@ -35,7 +35,7 @@ _JOINED_S = 3.0
 
 
 class CourtFeed:
-    """A court as its pages see it; used from the event loop only.
+    """Receives the messages of one court for all pages; used from the event loop only.
 
     It may be started before the court, and goes on after each restart of the court.
 
@@ -80,7 +80,7 @@ class CourtFeed:
             self._task = asyncio.get_running_loop().create_task(self._run())
 
     async def stop(self) -> None:
-        """Stop listening, and close the connection."""
+        """Stop listening to the court, and close the connection to it."""
         started = (self._task, self._restoring, self._explaining, self._measuring)
         tasks = [task for task in started if task]
         for task in tasks:
@@ -91,14 +91,14 @@ class CourtFeed:
 
     @property
     def connected(self) -> bool:
-        """True while the court sends frames that pages can show."""
+        """Whether the court sends frames that pages can show."""
         return self._connected
 
     async def joined(self) -> Session:
-        """Wait a moment until the court is connected, and return the connection.
+        """Return the connection to the court; wait up to some seconds until it is open.
 
         Raises:
-            UserError: if the court is not connected by then.
+            UserError: if it is still not open then.
         """
         end_s = time.monotonic() + _JOINED_S
         while not self._connected and time.monotonic() < end_s:
@@ -129,17 +129,17 @@ class CourtFeed:
             self._trip_ms = 1000 * (time.monotonic() - began_s)
 
     def log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log a line about this court."""
+        """Write a line about this court into the gateway's log."""
         self._say.info(text, kind=kind, match_id=self.picture.view.match_id, **particulars)
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page watch the court, and send it everything that is known."""
+        """Let a page watch the court, and send it everything that is known of the court's match."""
         for framed in (self._link(), *self._all()):
             viewer.send(framed)
         self.audience.add(viewer)
 
     def tap(self, listener: Listener) -> None:
-        """Let a listener receive everything that pages get, beginning with all that is known."""
+        """Let a listener receive what pages receive, first all that is known of the court."""
         for framed in (self._link(), *self._all()):
             listener.send(framed)
         self.audience.tap(listener)
@@ -177,7 +177,10 @@ class CourtFeed:
             await asyncio.sleep(_LOOK_S)
 
     def _come_back(self) -> None:
-        """Show the court again after a silence; it may have a new match, so send everything."""
+        """Show the court again after it was silent, and send pages everything about it.
+
+        It may have a new match.
+        """
         self._connected, self._why = True, None
         self.log(f"Court {self.court} sends frames.", "link", connected=True)
         self.audience.send(self._link(), *self._all())
@@ -197,7 +200,7 @@ class CourtFeed:
         )
 
     def _explain(self, now_s: float) -> None:
-        """Start to find out why the court is silent; the reason comes later."""
+        """Start to find out why the court is silent; pages are told the reason later."""
         idle = self._explaining is None or self._explaining.done()
         if self._wrong_version or not idle or now_s - self._explained_s < _WHY_S:
             return
@@ -210,7 +213,7 @@ class CourtFeed:
         self._why = None if self._connected else why
 
     async def _subscribe(self, session: Session) -> None:
-        """Subscribe to the court; the sheet and the log come before the first frame."""
+        """Subscribe to the court's messages; fetch the sheet and the events of its match first."""
         loop = asyncio.get_running_loop()
 
         def hear(key: str, depth: int, take: Callable[[bytes], None]) -> None:
@@ -304,7 +307,7 @@ class CourtFeed:
             self.audience.send_if_fast(framed)
 
     def _stray(self) -> None:
-        """Handle a message that can't be decoded: the sheet tells whether the version differs."""
+        """Fetch the sheet after a message could not be decoded: it tells the court's version."""
         if self._other_version is None:
             self.picture.view.doubt()
             self._catch_up()
@@ -327,7 +330,7 @@ class CourtFeed:
 
     @property
     def _log_number(self) -> int:
-        """Version of the log; a new one means that events before the newest may have changed."""
+        """A number that changes whenever earlier events of the match may have changed."""
         return self.picture.view.log.number
 
     @property
@@ -342,7 +345,7 @@ class CourtFeed:
         return say("gateway.other-version", court=self.court, version=version, gateway=PROTOCOL)
 
     def _catch_up(self) -> None:
-        """Start to fetch events, sheet and scene that did not arrive."""
+        """Start to fetch those events, sheet and scene of the match that have not arrived."""
         if self._restoring is None or self._restoring.done():
             self._restoring = asyncio.get_running_loop().create_task(self._restore())
 
@@ -361,7 +364,7 @@ class CourtFeed:
                 return  # the next frame or health asks again
 
     async def _fetch_log(self) -> None:
-        """Fetch the list of events, then add events that came meanwhile: the list lacks them."""
+        """Fetch all events of the match, and then add those that came while the court answered."""
         self._logs_asked += 1
         try:
             self._take_log(await self._ask(self._keys.event))

@@ -19,7 +19,7 @@ _TYPES = {".js": "text/javascript", ".svg": "image/svg+xml", ".wasm": "applicati
 
 
 class PageFile(NamedTuple):
-    """A file as it is served."""
+    """A file as a gateway serves it."""
 
     data: bytes
     packed: bytes | None
@@ -39,11 +39,11 @@ class PageFiles:
 
     @property
     def built(self) -> bool:
-        """True if the pages are built."""
+        """Whether the pages have been built."""
         return (self._folder / "index.html").is_file()
 
     def find(self, name: str) -> PageFile | None:
-        """Return a file by its path in the folder; None if there is none, or it lies outside."""
+        """Return a file by its path in the folder; None if it does not exist or lies outside."""
         try:
             path = (self._folder / name).resolve()
             if not path.is_relative_to(self._folder) or not path.is_file():
@@ -65,7 +65,7 @@ def _read(path: Path) -> PageFile:
 
 
 def page_file(data: bytes, kind: str) -> PageFile:
-    """Make a served file from its bytes and its media type."""
+    """Make the file that a gateway serves, from its bytes and its media type."""
     packed = None
     if len(data) >= _PACKED_FROM_BYTES and kind.startswith(_PACKED):
         packed = gzip.compress(data, 9, mtime=0)

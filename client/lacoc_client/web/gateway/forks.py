@@ -48,7 +48,7 @@ class ForkAsk(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
 
 
 class ForkMade(msgspec.Struct, frozen=True):
-    """A fork that was played."""
+    """The answer to a page whose fork was played."""
 
     name: str
     """Name of the fork's recording at this gateway."""
@@ -62,7 +62,7 @@ _printed = msgspec.json.Decoder(_Printed)
 
 
 class Forks:
-    """Plays forks, one at a time; used from the event loop only.
+    """Plays the forks that pages ask for, one at a time; used from the event loop only.
 
     Args:
         folder: folder for the records of the forks.
@@ -75,7 +75,7 @@ class Forks:
         self._process: Process | None = None
 
     async def play(self, record: Path, asked: ForkAsk, language: Language) -> ForkMade:
-        """Play a fork.
+        """Play a fork of a recording, and record it.
 
         Args:
             record: the recording.
@@ -97,7 +97,7 @@ class Forks:
             self._waiting -= 1
 
     def close(self) -> None:
-        """End the command, if one is running."""
+        """End the command that plays a fork, if one is running."""
         if self._process is not None:
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
@@ -141,7 +141,9 @@ def bots(record: Path) -> list[str]:
 
 
 def _check_players(record: Path, players: tuple[str, ...]) -> None:
-    """Check that each player is the name of a known bot: a file's name would let its code run.
+    """Check that each player is the name of a known bot.
+
+    A page could else name a file, and the file's code would run.
 
     Raises:
         UserError: if a player is no known bot.
@@ -165,10 +167,7 @@ def _words(record: Path, asked: ForkAsk, folder: Path) -> list[str]:
 
 
 async def _output(process: Process) -> tuple[bytes, bytes]:
-    """Read everything that a process prints, until it ends.
-
-    Keep its standard input open meanwhile.
-    """
+    """Read what a process prints, until it ends; meanwhile keep its standard input open."""
     assert process.stdout is not None
     assert process.stderr is not None
     out, errors = await asyncio.gather(process.stdout.read(), process.stderr.read())

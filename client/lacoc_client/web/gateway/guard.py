@@ -1,4 +1,4 @@
-"""Decides which connections a gateway accepts: of its own pages, and not too many of a machine.
+"""Lets a gateway accept only connections of its own pages, and not too many of one machine.
 
 Any web site can make a browser send requests to 127.0.0.1. So the Host of a request must be a name
 of this machine, the name of its public address, or an IP address. (Another site's name could be
@@ -78,10 +78,7 @@ class Guard:
             self._held += Counter()  # forgets those with none
 
     def _instead(self, scope: Scope) -> ASGIApp | None:
-        """Return the answer that is sent in place of the application's.
-
-        None: the application answers.
-        """
+        """Return an answer that refuses or redirects the request; None: the application answers."""
         if (refusal := self._why_not(scope)) is not None:
             return answer_browser(scope, refusal, 403)
         below = self._public.path
@@ -117,7 +114,7 @@ class Guard:
 
 
 def machine_of(scope: Scope) -> str:
-    """Return the address of the machine that asks.
+    """Return the address of the machine from which a request comes.
 
     Behind a trusted proxy, it is the address that the proxy names. "" if it is not known.
     """

@@ -1,4 +1,4 @@
-"""Limits how often requests of each sender pass, and slows down machines that try codes."""
+"""Limits the requests of each sender, and slows down machines that try one code after another."""
 
 from collections import OrderedDict
 
@@ -29,7 +29,7 @@ class Allowances:
         self._senders: OrderedDict[str, Allowance] = OrderedDict()
 
     def take(self, sender: str, now_s: float) -> bool:
-        """Count a request; return whether it may pass.
+        """Count a request of a sender; return whether the request may pass.
 
         Args:
             sender: who sent it, such as the address of a machine.
@@ -49,7 +49,7 @@ class Guesses:
         self._machines = Allowances(_GUESSES_HZ, _GUESSES_BURST)
 
     def wait_s(self, machine: str, now_s: float) -> float:
-        """Count a wrong code, and return how long its answer must wait [s].
+        """Count a wrong code that a machine sent; return how long its answer must wait [s].
 
         Args:
             machine: address of the machine that sent the code.

@@ -1,4 +1,4 @@
-"""The answer of a gateway to whoever checks that it is well."""
+"""The answer of a gateway to a program that checks whether the gateway is well."""
 
 import msgspec
 

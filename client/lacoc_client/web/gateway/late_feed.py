@@ -1,4 +1,4 @@
-"""Shows a court as it was some seconds ago: holds back all messages to its pages."""
+"""Shows a court as it was some seconds ago: keeps each message so long before pages get it."""
 
 import time
 from collections import deque
@@ -19,7 +19,7 @@ class _SentBy(Enum):
 
 
 class LateFeed:
-    """Passes on what a court's feed sends, each message later by a fixed time.
+    """Passes each message of a court's feed on to pages, a fixed time after it came.
 
     Args:
         feed: the feed of the court.
@@ -36,15 +36,15 @@ class LateFeed:
         feed.tap(self)
 
     def send(self, framed: bytes) -> None:
-        """Hold back a message that must arrive."""
+        """Keep a message that no page may miss; `play` passes it on after `behind_s`."""
         self._waiting.append((time.monotonic(), _SentBy.SENT, framed))
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Hold back a message that a slow page may miss."""
+        """Keep a message that slow pages may miss; `play` passes it on after `behind_s`."""
         self._waiting.append((time.monotonic(), _SentBy.IF_FAST, framed))
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """Hold a frame back."""
+        """Keep a frame of the match; `play` passes it on after `behind_s`."""
         self._waiting.append((now_s, _SentBy.OFFERED, framed))
 
     def add(self, viewer: Viewer) -> None:
@@ -54,7 +54,7 @@ class LateFeed:
         self.audience.add(viewer)
 
     def play(self, now_s: float) -> None:
-        """Pass on the messages that have waited for `behind_s`.
+        """Pass on to the pages all messages that came at least `behind_s` ago.
 
         Args:
             now_s: the time of `time.monotonic` [s].

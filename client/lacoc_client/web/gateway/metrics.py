@@ -10,7 +10,7 @@ from lacoc_client.web.gateway.courts import Courts
 
 
 class GatewayMetrics(Collector):
-    """The metrics of a gateway. A scrape only reads numbers that the event loop has written.
+    """The metrics of a gateway for Prometheus; a scrape only reads numbers and computes nothing.
 
     Args:
         courts: the courts of the gateway.
@@ -20,7 +20,7 @@ class GatewayMetrics(Collector):
         self._courts = courts
 
     def collect(self) -> Iterator[Metric]:
-        """Return all metric families; called by a scrape, on its own thread."""
+        """Return all metric families; called when Prometheus asks, on a thread of its own."""
         labels = ["court"]
         connected = GaugeMetricFamily(
             "lacoc_gateway_connected", "1 while the court sends frames.", labels=labels

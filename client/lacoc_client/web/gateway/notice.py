@@ -7,7 +7,7 @@ from lacoc_client.web.gateway.wire import MessageKind, map_message
 
 
 class Notice:
-    """The message to all pages, from the newest sheet of a contest; used from one thread at a time.
+    """The organiser's message to all pages, from the contest's newest sheet; not thread-safe.
 
     Args:
         sheet: the sheet's file, which need not exist yet; None: there is no contest.
@@ -18,7 +18,7 @@ class Notice:
         self._told: tuple[SheetDay, SheetLine | None] = (SheetDay(), None)
 
     def look(self) -> bool:
-        """Read the sheet if it is new; return whether the message has changed."""
+        """Read the contest's sheet if it is new; return whether the message in it has changed."""
         sheet = None if self._sheet is None else self._sheet.take()
         if sheet is None:
             return False
@@ -27,7 +27,7 @@ class Notice:
 
     @property
     def message(self) -> bytes:
-        """The message, as it is sent to a page."""
+        """The organiser's message, as the bytes that are sent to a page."""
         day, line = self._told
         body = {
             "text": line.text if line is not None else "",

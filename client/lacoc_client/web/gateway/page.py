@@ -43,7 +43,7 @@ _LOOKS_S = 10.0
 
 
 class Page:
-    """The connection of one page, and its place in the feed that it watches.
+    """The connection of one page that watches a court or follows the director.
 
     Args:
         websocket: the page's WebSocket, not accepted yet.
@@ -169,7 +169,7 @@ class Page:
         return True
 
     def _cheer(self, symbol: int) -> None:
-        """Count a cheer; a cheer that comes too soon is ignored without an error."""
+        """Count a cheer of this page; ignore one that comes too soon after the last."""
         audience = self._feed.audience if self._feed is not None else None
         if self._follows is not None:
             audience = self._follows.seen_by(self._viewer)
@@ -195,10 +195,10 @@ class Page:
         self._seat.join(asked, feed.access, self._answers.from_thread(asked.id))
 
     async def _proven_join(self, asked: wire.JoinAsk, feed: CourtFeed) -> Any:
-        """Join with a token that no court has accepted yet; first ask the court about the token.
+        """Take a seat with a token that no court has accepted yet; first ask the court about it.
 
-        A join needs a thread and a connection of its own, so it comes only after the token is
-        accepted.
+        To take a seat needs a thread and a connection of its own. So a page with a wrong token gets
+        neither.
         """
         await self._ask_where(asked.token or "", feed)
         joined = asyncio.get_running_loop().create_future()
@@ -230,9 +230,9 @@ class Page:
         return found
 
     def _accepted(self, token: str) -> None:
-        """Note that a court accepted the page's token: the page may play or judge from now on.
+        """Let the page play or referee from now on, because a court has accepted its token.
 
-        It takes one of the places for such pages, whose number is limited.
+        The number of such pages is limited.
 
         Raises:
             UserError: if there is no room.
@@ -295,7 +295,7 @@ class Page:
         return await self._courts.threads.run(lambda: client.look_ahead(asked.decision, _LOOKS_S))
 
     def _log(self, text: str, kind: str, **particulars: object) -> None:
-        """Log a line about this page; log nothing if the page has no court."""
+        """Write a line about this page and its court into the log; without a court, do nothing."""
         client, feed = self._websocket.client, self._feed
         if feed is not None:
             feed.log(text, kind, page=client and f"{client.host}:{client.port}", **particulars)

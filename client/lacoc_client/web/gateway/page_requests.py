@@ -23,7 +23,7 @@ long."""
 
 
 class Numbered(Protocol):
-    """A request with a number; the reply has the same number."""
+    """A request of a page; its reply has the same number."""
 
     @property
     def id(self) -> int:
@@ -75,7 +75,7 @@ async def _take(
     read: Callable[[bytes], Asked],
     answer: Callable[[Asked], Awaitable[bool]],
 ) -> bool:
-    """Answer one message; return False if the page's connection was closed."""
+    """Answer one message of a page; return False if the page's connection was closed."""
     try:
         asked = read(data)
     except wire.Unreadable as error:

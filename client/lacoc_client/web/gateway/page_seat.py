@@ -21,7 +21,7 @@ from lacoc_shared.words import render, say
 
 
 class PageSeat:
-    """Joins a seat for a page, steers it and tells the page its state.
+    """Joins a seat for a page, steers its robot, and tells the page the seat's state.
 
     Used from the event loop only.
 
@@ -85,7 +85,7 @@ class PageSeat:
         )
 
     def steer(self, asked: wire.ReadyAsk | wire.LeaveAsk | wire.KeyAsk | wire.SawAsk) -> None:
-        """Pass a request to the seat's controller.
+        """Pass a request of the page on to the controller of its seat.
 
         Raises:
             UserError: if the page has no seat.
@@ -107,7 +107,7 @@ class PageSeat:
     async def try_out(self, asked: wire.TryAsk, threads: Threads) -> TryOutReply:
         """Ask the court how the seat's robot would walk alone.
 
-        Wait on another thread than the seat's.
+        Wait for the answer on one of `threads`, so that the seat's own thread can go on.
 
         Raises:
             UserError: if the page has no seat, or the court refuses or does not answer.
@@ -125,10 +125,7 @@ class PageSeat:
         return await threads.run(ask)
 
     def leave(self) -> None:
-        """Stop repeating the command, because the page has gone.
-
-        The team does not give up the seat.
-        """
+        """Stop steering the robot, because the page has gone; the team keeps the seat."""
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])
@@ -141,7 +138,10 @@ class PageSeat:
         self._joins += 1
 
     def _entry(self, asked: wire.JoinAsk, watching: Access) -> tuple[Access, str, SeatFiles]:
-        """Return seat access, team name and files; take from the prefill what the page left out."""
+        """Return how to reach the seat, the team's name, and the robot and gait files.
+
+        What the page left out was given on the command line (`Prefill`).
+        """
         token, name = asked.token, asked.name
         files = SeatFiles(asked.robot, asked.postures, asked.locomotion)
         prefill = self._prefill if self._viewer.is_own else None

@@ -1,5 +1,7 @@
 """uvicorn's connections, extended for hundreds of pages and against clients that only block them.
 
+Here a frame is a WebSocket frame: the bytes of one message to a page.
+
 A message to all pages is made once, as the bytes of its WebSocket frame, and written to each page.
 Through ASGI, each of 300 pages would need a task switch 25 times a second. A socket also notices
 whether its page keeps up, so that a page gets no more than it can take.
@@ -34,7 +36,10 @@ CONNECTIONS_MOST = 500
 
 
 class PageSocket(WebSocketsSansIOProtocol):
-    """A WebSocket to which finished frames are written; `websocket.state.socket` is this object."""
+    """A WebSocket to which finished WebSocket frames are written.
+
+    For the application it is `websocket.state.socket`.
+    """
 
     heard_s = 0.0
     """Time when the page last sent anything, on the loop's clock."""
@@ -42,7 +47,7 @@ class PageSocket(WebSocketsSansIOProtocol):
     """Called when all bytes that had to wait have been sent."""
 
     def connection_made(self, transport: BaseTransport) -> None:
-        """Take over a connection; see `asyncio.Protocol`."""
+        """Begin to use a new connection of a page; see `asyncio.Protocol`."""
         super().connection_made(transport)
         self.heard_s = self.loop.time()
         cast(Transport, transport).set_write_buffer_limits(high=0)
@@ -51,7 +56,7 @@ class PageSocket(WebSocketsSansIOProtocol):
             raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, _UNSENT_BYTES)
 
     def handle_connect(self, event: Request) -> None:
-        """Begin the WebSocket handshake."""
+        """Answer the request with which a page opens its WebSocket."""
         super().handle_connect(event)
         if self.response.status_code == 101:
             self.scope["state"]["socket"] = self
@@ -62,14 +67,14 @@ class PageSocket(WebSocketsSansIOProtocol):
         super().data_received(data)
 
     def resume_writing(self) -> None:
-        """Continue after everything was sent; see `asyncio.Protocol`."""
+        """Continue after all bytes for the page were sent; see `asyncio.Protocol`."""
         super().resume_writing()
         if self.drained is not None:
             self.drained()
 
     @property
     def keeps_up(self) -> bool:
-        """True if everything written has been sent and the page answers its pings."""
+        """True if no written bytes wait for the page, and the page answers its pings."""
         if self.transport.get_write_buffer_size():
             return False
         if self.pending_ping_payload is None:
@@ -77,7 +82,7 @@ class PageSocket(WebSocketsSansIOProtocol):
         return self.loop.time() - self.ping_sent_at < _UNANSWERED_S
 
     def write(self, framed: bytes) -> None:
-        """Send a finished frame, even if earlier frames still wait."""
+        """Send a finished WebSocket frame, even if earlier ones still wait to be sent."""
         if self.close_sent or self.transport.is_closing():
             return
         if self.transport.get_write_buffer_size() > KEPT_BYTES:
@@ -104,7 +109,7 @@ class PageRequests(H11Protocol):
     _too_late: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Take over a connection; see `asyncio.Protocol`."""
+        """Begin to use a new connection of a browser; see `asyncio.Protocol`."""
         super().connection_made(transport)
         clients = (getattr(one, "client", None) for one in self.connections)
         machine = self.client[0] if self.client else ""

@@ -1,4 +1,4 @@
-"""The newest state of a court, kept as the bytes that are sent to its pages."""
+"""The newest messages of a court, kept as the bytes that are sent to the pages that watch it."""
 
 import msgspec
 
@@ -12,7 +12,7 @@ from lacoc_shared.words import Phrase
 
 
 class _Score(msgspec.Struct, array_like=True):
-    """The fields of a `SeatFrame` up to its score."""
+    """The fields of a `SeatFrame` (a seat in a frame) up to its score."""
 
     flags: int
     score: int
@@ -36,7 +36,7 @@ class SheetPart(msgspec.Struct):
 
 
 class FramePart(msgspec.Struct):
-    """How a match stands, read from the newest frame."""
+    """Phase, clock and scores of a match, read from the court's newest frame."""
 
     match: int
     phase: Phase
@@ -59,10 +59,11 @@ class _FrameHead(msgspec.Struct, array_like=True):
 
 
 class CourtPicture:
-    """The state of a court, for a page that connects now.
+    """The newest messages of a court: all that a page needs that begins to watch.
 
-    Each `take_...` returns the bytes for pages, or None if there is nothing new for them. It
-    raises `BadMessage` if the court's bytes can't be decoded; then the picture does not change.
+    Each `take_...` notes a message of the court. It returns the bytes to send to pages, or None if
+    they need not be sent. It raises `BadMessage` if the message can't be decoded; then nothing
+    changes.
     """
 
     def __init__(self) -> None:
@@ -85,7 +86,7 @@ class CourtPicture:
         return tuple(self.view.log)
 
     def all_but_frame(self) -> tuple[bytes, ...]:
-        """Return everything that a page needs before it can show a frame."""
+        """Return the messages that a page needs before it can show a frame of the match."""
         view = self.view
         sheet = [] if view.sheet is None else [wire.message(MessageKind.SHEET, view.sheet)]
         scene = [] if view.scene is None else [_scene(view.scene)]
@@ -93,7 +94,7 @@ class CourtPicture:
         return (*sheet, *scene, *view.log, *health)
 
     def stands(self) -> FramePart | None:
-        """Read how the match stands; None if there is no frame, or it can't be read."""
+        """Return phase, clock and scores of the match; None without a readable frame."""
         frame = self._newest
         if frame is None:
             return None
@@ -106,9 +107,9 @@ class CourtPicture:
         return FramePart(frame.match, phase, frame.clock_ticks, scores)
 
     def played(self) -> SheetPart | None:
-        """Read what is played.
+        """Return who plays, and which match it is, from the match's sheet.
 
-        None if the newest frame's match has no sheet yet, or an unreadable one.
+        None if no readable sheet of the newest frame's match has come yet.
         """
         sheet, frame = self.view.sheet, self._newest
         if sheet is None or frame is None:
@@ -122,7 +123,7 @@ class CourtPicture:
         return played if played.match == frame.match else None  # else a newer one is on its way
 
     def take_frame(self, payload: bytes) -> bytes:
-        """Note a frame of the court; return the bytes for pages."""
+        """Note a frame of the court; return the bytes to send to pages."""
         frame = decode(payload, _FrameHead, MAX_BYTES)
         self.view.see_frame(frame.scene)
         self.phase = frame.phase
@@ -131,12 +132,12 @@ class CourtPicture:
         return framed
 
     def take_event(self, payload: bytes) -> bytes | None:
-        """Note an event of the court; return the bytes for pages, or None if it is not new."""
+        """Note an event of the match; return the bytes to send to pages, or None if not new."""
         is_new = self.view.add_event(decode(payload, Event, MAX_BYTES), payload)
         return wire.message(MessageKind.EVENT, payload) if is_new else None
 
     def take_scene(self, payload: bytes) -> bytes | None:
-        """Note a scene of the court.
+        """Note a scene that the court has sent.
 
         Returns:
             The bytes for pages; None if the scene is not new, or not the newest frame's scene.
@@ -144,7 +145,7 @@ class CourtPicture:
         return _scene(payload) if self.view.take_scene(payload) else None
 
     def take_sheet(self, payload: bytes) -> bytes | None:
-        """Note a sheet of the court.
+        """Note a sheet that the court has sent.
 
         Returns:
             The bytes for pages; None if the sheet is not new, or has another protocol version.
@@ -152,7 +153,7 @@ class CourtPicture:
         return wire.message(MessageKind.SHEET, payload) if self.view.take_sheet(payload) else None
 
     def take_health(self, payload: bytes) -> bytes | None:
-        """Note the health of the court.
+        """Note a health message that the court has sent.
 
         Returns:
             The bytes for pages; None if the court has another version of the protocol.

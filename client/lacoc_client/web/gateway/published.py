@@ -1,4 +1,4 @@
-"""Puts the pages into a published folder, so that any web server can show it.
+"""Puts the pages into the folder that a contest publishes, so that any web server can show it.
 
 The addresses in the built pages are relative, so the folder can be at any path. Each page has an
 HTML file of its own that says which page it is, because another web server does not have the
@@ -16,7 +16,7 @@ FILES = {"index.html": "contest", "replay.html": "replay"}
 
 
 def write_pages(folder: Path) -> None:
-    """Write the pages of a contest into its published folder, in place of older ones.
+    """Write the pages of a contest into the folder that it publishes, in place of older pages.
 
     Args:
         folder: the folder, with contest.json and the folder "records".

@@ -1,7 +1,8 @@
 """The recordings that a gateway serves: finished ones, copies of matches just over, and forks.
 
-A court packs the record of a match when the next one opens. Until then the match that has just
-ended would be missing from the list, so the gateway packs a copy of its segments.
+A court joins the segments of a match's record into one file when the next match opens. Until then
+the match that has just ended would be missing from the list. So the gateway makes a copy of its
+segments as one file.
 """
 
 import contextlib
@@ -28,7 +29,7 @@ _ODDS_BYTES = 1 << 20
 
 
 class ListedRecord(msgspec.Struct, frozen=True):
-    """One entry of the list of recordings."""
+    """One recording, as the list of recordings shows it."""
 
     name: str
     bytes: int
@@ -98,7 +99,7 @@ class Recordings:
         return None
 
     def close(self) -> None:
-        """Delete the gateway's copies and forks."""
+        """Delete the gateway's own recordings: copies and forks."""
         for copying in self._copying.values():
             copying.terminate()
             copying.wait()
@@ -119,7 +120,7 @@ class Recordings:
         }
 
     def _copy(self) -> None:
-        """Start to copy matches that are over and not packed.
+        """Start to copy the segments of matches that are over but have no finished record yet.
 
         Copy none if the contest shows only some of its recordings.
         """

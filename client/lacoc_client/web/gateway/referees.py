@@ -1,4 +1,4 @@
-"""The referees' pages of a court at this gateway: one page acts, the others watch."""
+"""The pages at this gateway that referees of a court have open: one of them may decide."""
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
@@ -8,32 +8,35 @@ from lacoc_shared.words import say
 
 
 class Referees:
-    """The pages that have entered with a referee's token; used from the event loop only."""
+    """The pages that have shown a court's referee token; used from the event loop only.
+
+    One of them is the acting page: only it may make decisions.
+    """
 
     def __init__(self) -> None:
         self._entered: dict[Viewer, tuple[str, str]] = {}
         self._acting: Viewer | None = None
 
     def enter(self, viewer: Viewer, token: str, by: str) -> None:
-        """Add a page that has shown a referee's token; it acts if no other page does."""
+        """Add a page that has shown a referee's token; it becomes the acting page if none is."""
         self._entered[viewer] = (token, by)
         self._act(self._acting or viewer)
 
     def take_over(self, viewer: Viewer) -> None:
-        """Let a page act in place of the page that acts now.
+        """Make a page the acting page, in place of the present one.
 
         Raises:
-            UserError: if the page has not entered.
+            UserError: if the page has not shown a referee's token.
         """
         if viewer not in self._entered:
             raise UserError(say("gateway.enter-first"))
         self._act(viewer)
 
     def acting(self, viewer: Viewer) -> tuple[str, str]:
-        """Return the token and the name with which a page decides.
+        """Return the token and the referee's name with which the acting page decides.
 
         Raises:
-            UserError: if the page does not act.
+            UserError: if this page is not the acting page.
         """
         if viewer not in self._entered:
             raise UserError(say("gateway.enter-first"))
@@ -44,13 +47,13 @@ class Referees:
         return self._entered[viewer]
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page; if it was the acting page, nobody acts from now on."""
+        """Remove a page; if it was the acting page, there is no acting page from now on."""
         if self._entered.pop(viewer, None) is None:
             return
         self._act(None if viewer is self._acting else self._acting)
 
     def state(self, viewer: Viewer) -> bytes:
-        """Return the message that tells a page who acts."""
+        """Return the message that tells a referee's page which referee has the acting page."""
         acting = None if self._acting is None else self._entered[self._acting][1]
         body = {"acting": acting, "mine": viewer is self._acting}
         return wire.map_message(MessageKind.REFEREE, body)

@@ -1,4 +1,4 @@
-"""How the courts of a gateway stand: the few values of their newest frames that /contest shows."""
+"""How the matches at a gateway's courts stand, as /contest shows it: clock and scores."""
 
 import msgspec
 from starlette.requests import Request
@@ -27,7 +27,7 @@ class CourtScore(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def scores_route(courts: Courts) -> BaseRoute:
-    """Return the route that says how all courts stand.
+    """Return the route that says how the matches at all courts stand.
 
     A page that asks does not count as a spectator with a place: it gets a few hundred bytes, not
     frames.
@@ -44,7 +44,7 @@ def scores_route(courts: Courts) -> BaseRoute:
 
 
 def _score(feed: CourtFeed) -> CourtScore | None:
-    """Return how a court stands; None while the court is silent, or before its first frame."""
+    """Return how a court's match stands; None before its first frame or while it is silent."""
     stands, played = feed.picture.stands(), feed.picture.played()
     if not feed.connected or stands is None or played is None:
         return None

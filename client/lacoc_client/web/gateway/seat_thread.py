@@ -1,4 +1,4 @@
-"""A seat held for a page: a controller on a thread of its own.
+"""Holds a seat for a page: a thread sends the court the commands of the page's player.
 
 The thread passes on at once what the page sends: keys and signs of life, each with the frame that
 the page showed. In between it repeats the newest command with the newest of these frames. So the
@@ -74,7 +74,7 @@ class SeatThread:
         self._thread.start()
 
     def do(self, job: Callable[[Controller], Any], answer: Answer) -> None:
-        """Give the controller's thread a job.
+        """Let this thread do a job with the seat's controller.
 
         Jobs are done one after another, as soon as possible.
         """
@@ -83,7 +83,7 @@ class SeatThread:
             self._refuse_rest()
 
     def end(self) -> None:
-        """Stop repeating the command now; the team does not give up the seat."""
+        """Stop sending commands now; the team does not give up the seat."""
         self._ended = True
         self._jobs.put(None)
 
@@ -146,7 +146,7 @@ class SeatThread:
             job.answer(value, None)
 
     def _report(self, controller: Controller) -> None:
-        """Tell the page the state of the seat, if it has changed."""
+        """Tell the page the state of its seat, if the state has changed."""
         told: dict[str, Any] = {
             "seat": controller.seat,
             "index": controller.index,

@@ -69,7 +69,7 @@ class Port:
 
     @property
     def url(self) -> str:
-        """Address at which everybody opens the pages, without a slash at its end."""
+        """Address at which everybody opens the gateway's pages, without a slash at its end."""
         if self.public.pages:
             return self.public.pages
         host, port = self.socket.getsockname()[:2]
@@ -187,7 +187,7 @@ async def _renew(certificate: Certificate) -> None:
 class _Server(uvicorn.Server):
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Catch no signals here: `stop_signals` does, and uvicorn would end the process."""
+        """Let uvicorn catch no signals, because it would end the process; `stop_signals` does."""
         yield
 
 

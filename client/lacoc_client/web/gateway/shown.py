@@ -1,4 +1,4 @@
-"""The records that may be seen in a contest that keeps some back: those that its sheet names."""
+"""The records that everybody may see in a contest that hides some: those that its sheet names."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from lacoc_client.web.gateway.contest_sheet import NewestSheet, PublishedSheet
 
 
 class ShownRecords:
-    """Returns the names of the records on the newest sheet; may be used from any thread.
+    """Returns the names of the records that a contest's newest sheet names; for any thread.
 
     Args:
         sheet: the newest sheet of the contest, which its office writes.
@@ -17,7 +17,7 @@ class ShownRecords:
         self._known: tuple[PublishedSheet | None, frozenset[str]] = (None, frozenset())
 
     def __call__(self) -> frozenset[str]:
-        """Return the names; an empty set while there is no sheet."""
+        """Return the names of the records; an empty set while there is no sheet."""
         sheet = self._sheet.take()
         if sheet is None:
             return frozenset()

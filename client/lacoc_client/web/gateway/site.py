@@ -60,21 +60,21 @@ _MCAP = "application/octet-stream"
 
 
 class More(Protocol):
-    """Pages of another part of the program that a gateway serves too."""
+    """Further pages, from another part of the program, that a gateway serves."""
 
     paths: Sequence[str]
     """Paths of these pages."""
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """Routes of these pages besides the HTML file."""
+        """The HTTP routes that these further pages need besides their HTML file."""
 
     async def close(self) -> None:
-        """Close whatever these pages have opened."""
+        """Close what these pages have opened, when the gateway ends."""
 
 
 def site(home: Home, files: PageFiles, more: More | None = None) -> ASGIApp:
-    """Make the application of a gateway.
+    """Make the web application of a gateway.
 
     Args:
         home: the gateway's settings.
@@ -205,7 +205,7 @@ def event_route(home: Home) -> BaseRoute:
 
 
 def sheet_route(path: Path | None) -> BaseRoute:
-    """Return the route of a contest's newest sheet.
+    """Return the route on which a contest's newest sheet is served.
 
     Args:
         path: the sheet's file, which need not exist yet; None: there is no contest.
@@ -226,7 +226,7 @@ def sheet_route(path: Path | None) -> BaseRoute:
 def page_routes(
     files: PageFiles, paths: Sequence[str], others: Iterable[BaseRoute], title: str = ""
 ) -> list[BaseRoute]:
-    """Return the routes of a site with pages.
+    """Return the routes of a web site that has some of the built pages.
 
     Args:
         files: the built pages.
@@ -256,7 +256,7 @@ def page_routes(
         return _not_found(request) if file is None else file_response(request, file, FOR_EVER)
 
     async def top_file(request: Request) -> Response:
-        """Serve a file that stands beside index.html.
+        """Serve a file of the built pages that lies beside index.html.
 
         The icon can be fetched by its old name too.
         """
@@ -265,7 +265,7 @@ def page_routes(
         return _not_found(request) if file is None else file_response(request, file, "max-age=3600")
 
     async def healthz(request: Request) -> Response:
-        """Answer that the gateway runs, and how the request came here through proxies."""
+        """Answer that the gateway runs, and what the request looked like after any proxies."""
         forwarded = request.headers.get("x-forwarded-for", "")
         asks = [one.strip() for one in forwarded.split(",") if one]
         health = GatewayHealth(

@@ -1,4 +1,4 @@
-"""Threads for calls that wait for a court, so that the event loop does not wait for it."""
+"""Threads on which calls wait for a court's answer, so that the event loop need not wait."""
 
 import asyncio
 from collections.abc import Callable
@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Threads:
-    """A few threads for calls; further calls wait while all threads are busy.
+    """A few threads on which calls run; more calls wait while all threads are busy.
 
     Args:
         count: number of threads.
@@ -23,5 +23,5 @@ class Threads:
         return await asyncio.get_running_loop().run_in_executor(self._pool, do)
 
     def close(self) -> None:
-        """Accept no more calls; calls that run may finish."""
+        """Take no more calls; calls that run may finish."""
         self._pool.shutdown(wait=False, cancel_futures=True)

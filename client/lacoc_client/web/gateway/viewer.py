@@ -1,4 +1,4 @@
-"""One page of an audience: how often it gets a frame, and whether it may act."""
+"""One page that watches a court: how often it gets a frame, and whether it may act."""
 
 import time
 from collections.abc import Callable
@@ -14,7 +14,7 @@ _EARLY_S = 0.01  # half a beat: frames come with some jitter
 
 @dataclass
 class Frames:
-    """Counts of the frames that were due for pages."""
+    """How many frames pages were sent, and how many they missed because they were too slow."""
 
     sent: int = 0
     dropped: int = 0
@@ -31,17 +31,17 @@ class Socket(Protocol):
 
     @property
     def keeps_up(self) -> bool:
-        """True if the page has received everything that was written."""
+        """True if the page takes messages as fast as they are written; False: it is too slow."""
 
     def write(self, framed: bytes) -> None:
-        """Send a finished frame."""
+        """Send a message, as a finished WebSocket frame."""
 
     def watch_closely(self) -> None:
-        """Check several times a second whether the page is still there."""
+        """Check several times a second whether the page still answers."""
 
 
 class Viewer:
-    """A page's place in a feed.
+    """A page that watches a court, as the feed of the court sees it.
 
     While the page is too slow, one frame waits, and a newer frame replaces it. All other messages
     are written at once; a page that does not take them is closed.
@@ -68,17 +68,17 @@ class Viewer:
         socket.drained = self._send_slot
 
     def rate(self, hz: float) -> None:
-        """Set the frame rate [Hz]; a rate below 1 or above 50 becomes 1 or 50."""
+        """Set the page's frame rate [Hz]; a rate below 1 or above 50 becomes 1 or 50."""
         # Comparisons with NaN are False, so it becomes the highest rate.
         self._interval_s = 1 / (MOST_HZ if not hz < MOST_HZ else max(LEAST_HZ, hz))
         self._next_s = 0.0
 
     def at_least(self, hz: float) -> None:
-        """Raise the frame rate to at least `hz`."""
+        """Raise the page's frame rate to `hz` if it is lower [Hz]."""
         self.rate(max(hz, 1 / self._interval_s))
 
     def offer(self, framed: bytes, now_s: float) -> None:
-        """If a frame is due, send it, or store it while the page is too slow."""
+        """Send a frame if it is time for one; if the page is too slow, keep the frame for later."""
         next_s = self._next_s
         if now_s < next_s - _EARLY_S:
             return
@@ -92,16 +92,16 @@ class Viewer:
             self._slot = framed
 
     def send(self, framed: bytes) -> None:
-        """Send a message that must arrive."""
+        """Send a message that the page must not miss; a page that does not take it is closed."""
         self._socket.write(framed)
 
     def send_if_fast(self, framed: bytes) -> None:
-        """Send a message if the page keeps up; a slow page gets a later message of this kind."""
+        """Send a message unless the page is too slow; it then gets a later one of this kind."""
         if self._socket.keeps_up:
             self._socket.write(framed)
 
     def watch_closely(self) -> None:
-        """Check several times a second whether the page is still there."""
+        """Check several times a second whether the page still answers."""
         self._socket.watch_closely()
 
     def unheard_s(self) -> float:

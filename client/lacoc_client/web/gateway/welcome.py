@@ -8,7 +8,7 @@ from lacoc_shared.messages import PROTOCOL
 
 
 def welcome(home: Home, court: str | None, can_act: bool = False, is_own: bool = False) -> bytes:
-    """Make the welcome of a page.
+    """Make the first message to a page.
 
     Args:
         home: the gateway's settings.

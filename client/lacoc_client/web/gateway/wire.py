@@ -29,7 +29,7 @@ FAULT = say("gateway.fault")
 
 
 class Unreadable(UserError):
-    """A page sent something that is not a known request."""
+    """Raised when a page has sent something that is not a known request."""
 
 
 class TokenRefused(UserError):
@@ -106,7 +106,7 @@ class Rate(Ask, frozen=True, kw_only=True, tag="rate"):
 
 
 class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
-    """Ask for a reply, as a sign of life.
+    """Ask for a reply, to show that the page is still there.
 
     The reply says how long an answer of the court takes, if the page has a court.
     """
@@ -115,7 +115,7 @@ class Ping(Ask, frozen=True, kw_only=True, tag="ping"):
 
 
 class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
-    """Take a seat."""
+    """Take a seat for a team."""
 
     seat: _Short
     token: _Token | None = None
@@ -129,7 +129,7 @@ class JoinAsk(Ask, frozen=True, kw_only=True, tag="join"):
 
 
 class WhereAsk(Ask, frozen=True, kw_only=True, tag="where"):
-    """Ask where a team plays."""
+    """Ask where the team with a token plays."""
 
     token: _Token | None = None
     """The team's token; None: the one that was given on the command line."""
@@ -142,7 +142,7 @@ class ReadyAsk(Ask, frozen=True, kw_only=True, tag="ready"):
 
 
 class LeaveAsk(Ask, frozen=True, kw_only=True, tag="leave"):
-    """Give up the seat."""
+    """Give up the seat that the page holds."""
 
 
 class KeyAsk(Ask, frozen=True, kw_only=True, tag="key"):
@@ -164,7 +164,7 @@ class SawAsk(Ask, frozen=True, kw_only=True, tag="saw"):
 
 
 class CheerAsk(Ask, frozen=True, kw_only=True, tag="cheer"):
-    """Cheer with one of the symbols."""
+    """Cheer a match with one of the symbols for cheers."""
 
     symbol: Annotated[int, msgspec.Meta(ge=0, le=3)]
 
@@ -180,14 +180,14 @@ class TryAsk(Ask, frozen=True, kw_only=True, tag="try"):
 
 
 class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
-    """Enter as a referee, with a name."""
+    """Enter as a referee, with a token and the referee's name."""
 
     token: _Token
     by: _Short
 
 
 class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):
-    """Act as referee from now on, in place of another page."""
+    """Act for the referee from now on, in place of another page of the court's referees."""
 
 
 class DecideAsk(Ask, frozen=True, kw_only=True, tag="decide"):
@@ -252,7 +252,7 @@ def read(data: bytes) -> Asked:
 
 
 def do_of(data: bytes) -> str:
-    """Return the kind of a request (`do`), when its other fields can't be read.
+    """Return the kind of a request (its field `do`), without reading its other fields.
 
     Raises:
         msgspec.DecodeError: if it has no kind.
@@ -291,18 +291,18 @@ def message(kind: MessageKind, payload: bytes) -> bytes:
 
 
 def inside(framed: bytes) -> bytes:
-    """Take off the WebSocket frame of a message that `message` made; return kind and payload."""
+    """Undo `message`: return the byte of the kind and the payload, without the WebSocket frame."""
     return framed[{126: 4, 127: 10}.get(framed[1], 2) :]
 
 
 def opened(framed: bytes) -> tuple[MessageKind, bytes]:
-    """Return kind and payload, separately, of a message that `message` made."""
+    """Undo `message`: return the kind of message and the payload, as two values."""
     data = inside(framed)
     return MessageKind(data[0]), data[1:]
 
 
 def map_message(kind: MessageKind, value: dict[str, Any]) -> bytes:
-    """Make a WebSocket frame with a message of the gateway itself, a msgpack map."""
+    """Make the WebSocket frame of a message whose payload the gateway writes as a msgpack map."""
     return message(kind, encode(value))
 
 
@@ -327,12 +327,12 @@ def files_message(own: OwnFiles, used: int | None = None) -> bytes:
 
 
 def reply(to: int, value: Any) -> bytes:
-    """Make the reply to a request that was done."""
+    """Make the reply to the request with the number `to`, which was done."""
     return map_message(MessageKind.REPLY, {"id": to, "ok": True, "value": value})
 
 
 def refusal(to: int, error: UserError | FileRefused) -> bytes:
-    """Make the reply to a request that was refused."""
+    """Make the reply to the request with the number `to`, which was refused."""
     mistakes = error.mistakes if isinstance(error, FileRefused) else []
     body = {
         "id": to,

@@ -25,7 +25,7 @@ _COMING_BACK_S, _AGAIN_S = 1.0, 0.05
 
 
 class DeskLine:
-    """The connection to the desk; it is opened with the first request.
+    """The connection to the office's desk; it is opened with the first request.
 
     Args:
         address: address of the desk.
@@ -38,7 +38,7 @@ class DeskLine:
         self._opening = threading.Lock()
 
     async def ask(self, request: bytes) -> bytes:
-        """Send a request, and return the answer.
+        """Send a request to the office's desk, and return the answer.
 
         Raises:
             FileRefused: if the desk found mistakes in files.
@@ -49,7 +49,7 @@ class DeskLine:
         return await self._threads.run(lambda: self._ask(request))
 
     async def close(self) -> None:
-        """Close the connection."""
+        """Close the connection to the office's desk."""
         self._threads.close()
         if self._session is not None:
             await asyncio.to_thread(self._session.close)

@@ -32,7 +32,7 @@ _WRONG = (
 
 
 class DeskAsk(Ask, frozen=True, kw_only=True, tag="desk"):
-    """Pass a request on to the desk; the reply is the desk's answer."""
+    """Pass a request on to the office's desk; the reply is the desk's answer."""
 
     request: msgspec.Raw
 
@@ -44,7 +44,7 @@ class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
 
 
 class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
-    """Ask for the links of teams and referees; the secret is the organiser's key."""
+    """Ask for the links of teams and referees; only who shows the organiser's key gets them."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)]
     team: Annotated[str, msgspec.Meta(max_length=64)] = ""
@@ -58,7 +58,7 @@ _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
 
 
 def read(data: bytes) -> Asked:
-    """Decode a request.
+    """Decode a request of a page /office or /enter.
 
     Raises:
         Unreadable: if it is no known request.

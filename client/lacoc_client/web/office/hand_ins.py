@@ -1,4 +1,4 @@
-"""Limits how often files may be handed in: each time the office weighs in a robot and a gait."""
+"""Limits how often files may be handed in, because the office then weighs in robot and gait."""
 
 import msgspec
 
@@ -28,7 +28,7 @@ class HandIns:
         self._changes = Allowances(1 / _CHANGE_S, _CHANGES)
 
     def count(self, machine: str, request: bytes, now_s: float) -> None:
-        """Count a request if it hands in files.
+        """Count a request to the desk if it hands in files.
 
         Args:
             machine: address of the machine that sent it.
@@ -37,7 +37,7 @@ class HandIns:
             now_s: time on a clock that never goes back [s].
 
         Raises:
-            UserError: if there were too many.
+            UserError: if this machine or team has handed in files too often.
         """
         try:
             kind = msgspec.msgpack.decode(request, type=_Kind)

@@ -14,7 +14,7 @@ _BORDER = 4
 
 
 class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
-    """A team's link."""
+    """A link that opens the page of a team."""
 
     team: str
     link: str
@@ -23,7 +23,7 @@ class TeamLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of a court's referee."""
+    """The link that opens the page of a court's referee."""
 
     court: str
     link: str
@@ -32,7 +32,7 @@ class RefereeLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of a member of the staff to the organiser's page."""
+    """The link with which a member of the staff opens the organiser's page."""
 
     name: str
     link: str
@@ -41,7 +41,7 @@ class StaffLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
-    """The link of an open seat, for friendly matches."""
+    """The link that opens an open seat, for friendly matches."""
 
     court: str
     seat: str
@@ -64,7 +64,7 @@ class ContestLinks(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class LinkMaker:
-    """Makes the links of an event.
+    """Makes the links that open the pages of an event.
 
     Args:
         address: address of the pages, such as "http://192.168.1.20:8080".
@@ -76,17 +76,17 @@ class LinkMaker:
         self._authority = authority
 
     def team(self, team: str, token: str) -> TeamLink:
-        """Make the link of a team with its token."""
+        """Make the link that opens the page of the team with this token."""
         link = self._link("play", token)
         return TeamLink(team=team, link=link, qr=qr_code(link))
 
     def seat(self, court: str, seat: str, token: str) -> SeatLink:
-        """Make the link of an open seat with its token."""
+        """Make the link that opens the open seat with this token."""
         link = self._link("play", token)
         return SeatLink(court=court, seat=seat, link=link, qr=qr_code(link))
 
     def staff(self, name: str, token: str) -> StaffLink:
-        """Make the link of a member of the staff with the token."""
+        """Make the link with which a member of the staff opens the organiser's page."""
         link = self._link("office", token)
         return StaffLink(name=name, link=link, qr=qr_code(link))
 
@@ -107,7 +107,7 @@ class LinkMaker:
 
 @lru_cache(maxsize=1024)  # one takes some milliseconds, and a large contest has hundreds
 def qr_code(text: str) -> str:
-    """Return a text as a QR code in SVG, black on white."""
+    """Return the picture of a text as a QR code: SVG, black on white."""
     out = io.BytesIO()
     options: dict[str, Any] = {"border": _BORDER, "light": "#fff", "xmldecl": False}
     segno.make(text, error="m", micro=False).save(out, kind="svg", omitsize=True, **options)

@@ -38,7 +38,7 @@ class DeskSite:
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """The routes of these pages' requests, and of the address at which teams enter."""
+        """The routes of the WebSockets of these pages, and of the address where teams enter."""
 
         async def page(websocket: WebSocket) -> None:
             await DeskPage(websocket, self._line, self._guesses, self._hand_ins, self._make).serve()

@@ -67,7 +67,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SeenStudent(msgspec.Struct, frozen=True, kw_only=True):
-    """What a student's card shows besides the evidence."""
+    """What is known of a student, for the card, besides the evidence."""
 
     name: str
     online: bool = False

@@ -12,7 +12,7 @@ from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
-"""Name of the document with the hashes of a student's tokens."""
+"""Name of the document in the class file that has the hashes of a student's tokens."""
 _MOST_BROWSERS = 4
 
 
@@ -62,23 +62,23 @@ class ClassStudent(Student):
         return not (self.viewers or self.lessons or did or self.draft)
 
     def learned(self, trial: TrialReply | None) -> None:
-        """Note that the student did something; if it was a trial, `trial` is its reply."""
+        """Note that the student did something. After a trial, `trial` is the studio's reply."""
         self.seen_s = time.time()
         if trial is not None:
             self._trial = trial
         self.hand_moved()
 
     def hand_moved(self) -> None:
-        """Note the time at which the student's hand went up, or that it is not up."""
+        """Note since when the student has had a hand up to ask for help, or that no hand is up."""
         if not self.diary.progress.hand_up:
             self.hand_up_s = None
         elif self.hand_up_s is None:
             self.hand_up_s = time.time()
 
     def add_token(self, token_hash: str) -> None:
-        """Let one more browser in with a token.
+        """Let one more browser enter as this student, with a token of its own.
 
-        If there are too many browsers, the oldest loses its token.
+        If the student then has too many browsers, the token of the oldest one becomes invalid.
         """
         self.token_hashes = (*self.token_hashes, token_hash)[-_MOST_BROWSERS:]
         self.is_admitting = False
@@ -96,7 +96,7 @@ class ClassStudent(Student):
         return card(seen, self.diary.evidence, self.diary.progress, time.time())
 
     def changed_card(self) -> Card | None:
-        """Return the card if it has changed since the last call; else None."""
+        """Return the student's card if it has changed since the last call; else None."""
         now = self.card()
         if now == self._last:
             return None
@@ -104,5 +104,5 @@ class ClassStudent(Student):
         return now
 
     async def keep_token(self) -> None:
-        """Write the hashes of the tokens to the disk."""
+        """Write the hashes of the student's tokens to the disk."""
         await self.diary.write(TOKEN, " ".join(self.token_hashes).encode())

@@ -140,11 +140,11 @@ class Classroom:
     # What students do
 
     async def enter(self, hello: requests.Hello, where: str) -> LetIn:
-        """Let a student in: with a token, or with the class code and a nickname (`Host.enter`)."""
+        """Let a student in, with a token or with class code and nickname; see `Host.enter`."""
         return await self._door.enter(hello, where)
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
-        """Send a page the messages that it shows first (`Host.greet`)."""
+        """Send a page everything that it shows first; see `Host.greet`."""
         assert isinstance(student, ClassStudent)
         student.greet(viewer, lesson)
         student.seen_s = time.time()
@@ -158,7 +158,7 @@ class Classroom:
         self._tell_card(student)
 
     def leave(self, student: Student, viewer: Viewer) -> None:
-        """Remove a page that has gone, and tell the teacher (`Host.leave`)."""
+        """Remove a page that was closed, and tell the teacher; see `Host.leave`."""
         assert isinstance(student, ClassStudent)
         student.leave(viewer)
         if (state := self.groups.of(student)) is not None:
@@ -166,14 +166,14 @@ class Classroom:
         self._tell_card(student)
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell the student's pages and the teacher what a student has done (`Host.learned`)."""
+        """Tell the student's pages and the teacher what a student did; see `Host.learned`."""
         assert isinstance(student, ClassStudent)
         student.learned(trial)
         student.tell()
         self._tell_card(student)
 
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
-        """Do what a student asks about groups, such as join one (`Host.group`)."""
+        """Do what a student asks about groups, such as join one; see `Host.group`."""
         assert isinstance(student, ClassStudent)
         self.groups.spend(student)
         match asked.act:
@@ -194,7 +194,7 @@ class Classroom:
     # What the teacher does
 
     def find(self, name: str) -> ClassStudent:
-        """Return a student by name.
+        """Return the student with this nickname.
 
         Raises:
             UserError: if there is no student of this name.
@@ -221,7 +221,7 @@ class Classroom:
         sequences: tuple[tuple[int, ...], ...] | None,
         group: str = "",
     ) -> None:
-        """Offer a table to all students, also to those who come later, or to a group.
+        """Offer a gait's table to a group, or to all students and those who come later.
 
         Raises:
             UserError: if there is no group of this name.
@@ -252,7 +252,7 @@ class Classroom:
             await self.groups.leave(student)
 
     async def lower(self, student: ClassStudent) -> None:
-        """Take down the raised hand of a student."""
+        """Take down the hand that a student has raised for help."""
         await student.diary.add(Hand(up=False))
         student.hand_moved()
         student.tell()
@@ -342,9 +342,9 @@ class Classroom:
         await self._set(groups=tuple(self.groups.states.values()))
 
     def _handed(self, student: ClassStudent) -> Handed | None:
-        """Return the table that a student was handed last, with the whole class or with the group.
+        """Return the last table that the teacher offered to the class or to this student's group.
 
-        None: the student was handed no table.
+        None: the teacher has offered no table.
         """
         state = self.groups.of(student)
         both = (self.state.handed, state.handed if state is not None else None)
@@ -373,7 +373,7 @@ class Classroom:
 
 
 def _by_student(kept: Iterable[_T]) -> dict[str, list[_T]]:
-    """Group evidence or documents by student, without a change of the order for each student."""
+    """Group evidence or documents by student; those of one student stay in their order."""
     groups: dict[str, list[_T]] = {}
     for one in kept:
         groups.setdefault(one.student, []).append(one)

@@ -73,7 +73,7 @@ class ClassDoor:
         return student
 
     async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
-        """Check the class code and the nickname; return the student of this name, made if new."""
+        """Check the class code and the nickname; return this student, or make a new one."""
         if not hello.code:
             raise UserError(say("class.enter"))
         if read_code(hello.code) != self._code():
@@ -98,9 +98,9 @@ class ClassDoor:
         return student
 
     async def _make_room(self) -> None:
-        """Make room for a newcomer: delete the first student who did nothing and has no page open.
+        """Make room in a full class: delete a student who did nothing and has no page open.
 
-        So nobody can keep others out by entering under a hundred nicknames.
+        So nobody can fill the class by entering under a hundred nicknames.
 
         Raises:
             UserError: if there is no such student.

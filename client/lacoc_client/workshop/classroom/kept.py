@@ -20,7 +20,7 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[Document]) -> list[Document]:
-    """Return the gait and robot files of all tables in a class file.
+    """Return the gait and robot files that all tables in a class file stand for.
 
     Documents that are no tables are left out. The files of a group are under the group's name.
     """
@@ -57,7 +57,7 @@ def _draft(kept: Document) -> Draft | None:
 
 
 def export(path: Path) -> dict[str, bytes]:
-    """Export a class that no program has open; return the files by name.
+    """Export the evidence and tables of a class; return the files by name.
 
     Raises:
         UserError: if there is no such class, it is open, or its file is damaged.

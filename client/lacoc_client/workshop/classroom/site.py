@@ -1,4 +1,4 @@
-"""The routes of a class."""
+"""The paths that the web application of a class answers."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -22,7 +22,7 @@ PATH = "/class"
 
 
 def class_site(classroom: Classroom, files: PageFiles) -> ASGIApp:
-    """Make the application of a class: /design for students, /class for their teacher.
+    """Make the web application of a class: /design for students, /class for their teacher.
 
     Args:
         classroom: the class.

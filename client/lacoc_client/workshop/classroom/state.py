@@ -1,4 +1,4 @@
-"""The settings of a class: code, page key, rules, groups, and the table that was handed out."""
+"""The settings of a class: code, page key, rules, groups, and the table that students may take."""
 
 import time
 
@@ -31,7 +31,7 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
     groups: tuple[GroupState, ...] = ()
 
     def kept(self) -> Document:
-        """Return the settings as a document for the class file."""
+        """Return the settings of the class as a document for the class file."""
         return Document(NOBODY, NAME, "", time.time(), msgspec.json.encode(self))
 
 

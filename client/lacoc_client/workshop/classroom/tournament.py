@@ -31,7 +31,7 @@ _CLOSE_S = 15.0
 
 
 class ClassMatch(msgspec.Struct, frozen=True, kw_only=True):
-    """A match that has ended."""
+    """A match of the tournament that has ended."""
 
     left: str
     right: str
@@ -55,7 +55,7 @@ class LeftOut(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class TournamentState(msgspec.Struct, frozen=True, kw_only=True):
-    """How far a tournament is."""
+    """How far a tournament is: its matches and standings so far."""
 
     state: Literal["none", "running", "done", "stopped"] = "none"
     arena: str = ""
@@ -157,7 +157,7 @@ class Tournament:
     async def _simulate(
         self, teams: "Mapping[str, _TournamentPlayer]", words: list[str]
     ) -> Phrase | None:
-        """Run `lacoc simulate` with these teams and further words of the command line.
+        """Run `lacoc simulate` with these teams and with more words on its command line.
 
         Returns:
             Why the command ended early; None if it did not.
@@ -231,7 +231,7 @@ class _TournamentPlayer(msgspec.Struct, frozen=True):
 
 
 def _written(players: Mapping[str, SeatFiles], folder: Path) -> dict[str, _TournamentPlayer]:
-    """Write the files of each player into a folder.
+    """Write the robot and gait files of each player into a folder.
 
     Returns:
         The players, by the word that names each player on the command line.

@@ -1,1 +1,1 @@
-"""The page /design, on which a student designs a gait: with files, a studio and the phases."""
+"""The page /design, on which a student designs a gait and does the tasks of the phases."""

@@ -63,9 +63,9 @@ class DesignPage:
                 task.cancel()
 
     async def _take(self, asked: requests.Asked) -> bool:
-        """Answer a request, or close the page; return False if the page was closed.
+        """Answer a request, or close the connection; return False if it was closed.
 
-        A page that is not let in may only send a hello or a ping.
+        A page that has not been let in yet may only send `Hello` and `Ping`.
         """
         if isinstance(asked, requests.Hello):
             await self._enter(asked)
@@ -197,7 +197,7 @@ class DesignPage:
         return {}
 
     async def _play(self, asked: requests.PlayAsk, learner: Learner) -> dict[str, str]:
-        """Check a table, and give its files to a court, to practise there.
+        """Check a table, and give its files to a court, where the student can play with them.
 
         Returns:
             `url`: the address of the page at that court.
@@ -223,7 +223,7 @@ class DesignPage:
         return (await self._checked_files(asked, learner))._asdict()
 
     async def _checked_files(self, asked: requests.PlayAsk, learner: Learner) -> SeatFiles:
-        """Check a table, and make its files.
+        """Check a table, and make robot and gait files of it.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -237,7 +237,7 @@ class DesignPage:
         return Draft(table=asked.table, sequences=asked.sequences, robot=robot).files()
 
     async def _learn(self, asked: requests.Asked, learner: Learner) -> Any:
-        """Answer a request about the phases."""
+        """Answer a request about the phases, such as an answer to a question."""
         student, diary = learner.student, learner.student.diary
         value: Any = {}
         match asked:
@@ -263,7 +263,7 @@ class DesignPage:
         return value
 
     def _with_files(self, asked: requests.Asked) -> Any:
-        """Answer a request about files; runs on another thread."""
+        """Answer a page's request about gait and robot files; runs on another thread."""
         match asked:
             case requests.ReadAsk():
                 return self._folder().read(asked.name)
@@ -314,7 +314,11 @@ def parsed(asked: requests.ParseAsk) -> Any:
 
 
 def _must_allow(learner: Learner, size: str | None) -> None:
-    """Check that the coach may search for a change of this size.
+    """Check that the teacher lets the coach search for a change of this size.
+
+    Args:
+        learner: the student who asks.
+        size: "cell", "three" or "table"; None: the coach only says which numbers matter.
 
     Raises:
         UserError: if the teacher does not allow it.
@@ -334,5 +338,5 @@ def _must_be_open(learner: Learner, phase: int) -> None:
 
 
 def _court(host: Host) -> str | None:
-    """Return the court to which a page can take its table: "practice"; None: there is none."""
+    """Return "practice", the name of the court where a page can try its table; None: no court."""
     return None if host.playing is None else "practice"

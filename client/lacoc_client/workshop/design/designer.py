@@ -86,7 +86,7 @@ class Designer:
         student.tell()
 
     async def group(self, student: Student, asked: requests.GroupAsk) -> None:
-        """Refuse: there are no groups here, as everybody with the page key shares the table."""
+        """Refuse every request about groups: there are none for a person who designs alone."""
         raise UserError(say("groups.not-here"))
 
     def sample(self) -> FileContent:
@@ -95,7 +95,7 @@ class Designer:
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Until the block ends, watch the folder and the studio, and tell pages what changes."""
+        """Watch folder and studio until the `async with` block ends; tell pages what changes."""
         self.studios.start()
         await self._student.diary.read()
         self._student.open_kept()

@@ -20,7 +20,7 @@ _PACKED = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # workbooks, also old ones
 
 @dataclass(frozen=True)
 class FileContent:
-    """The content of a file: a table, or the text of a robot file."""
+    """The content of a gait or robot file: a table, or the robot file's text."""
 
     table: FileTable | None = None
     robot: str | None = None
@@ -52,7 +52,7 @@ def read_file(name: str, data: bytes) -> FileContent:
 
 
 def file_bytes(name: str, content: FileTable | str, before: bytes | None = None) -> bytes:
-    """Return the content of a file, in the format that its suffix asks for.
+    """Return the bytes of a gait or robot file, in the format that its suffix asks for.
 
     Args:
         name: name of the file.

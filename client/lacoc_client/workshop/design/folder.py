@@ -36,7 +36,7 @@ _LONGEST_NAME = 100
 
 
 class FolderFile(msgspec.Struct, frozen=True):
-    """A file of the folder."""
+    """A gait or robot file in the folder, with its version."""
 
     name: str
     slot: Slot
@@ -44,7 +44,7 @@ class FolderFile(msgspec.Struct, frozen=True):
 
 
 class Read(msgspec.Struct, frozen=True, kw_only=True):
-    """The content of a file: a table, or the text of a robot file."""
+    """What was read from a file: a table, or the text of a robot file."""
 
     table: FileTable | None = None
     robot: str | None = None
@@ -55,13 +55,13 @@ class Read(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class SavedFile(msgspec.Struct, frozen=True):
-    """The answer after a file was written."""
+    """The answer to a request to save, if the file was written."""
 
     version: str
 
 
 class Conflict(msgspec.Struct, frozen=True):
-    """The answer after nothing was written, because the file has changed since it was read."""
+    """The answer to a request to save, if the file had changed since it was read: not saved."""
 
     conflict: Read
     """The present content of the file."""
@@ -95,9 +95,9 @@ class Folder:
         self.look()
 
     def look(self) -> tuple[str, ...]:
-        """Read the folder again.
+        """List the folder's files again.
 
-        Return the names of files that were changed, added or removed since the last look.
+        Return the names of files that were changed, added or removed since the last call.
         """
         with self._lock:
             self._look()
@@ -105,7 +105,7 @@ class Folder:
             return tuple(sorted(changed))
 
     def read(self, name: str) -> Read:
-        """Read a file.
+        """Read a gait or robot file of the folder.
 
         Raises:
             FileRefused: with every mistake of a gait file.
@@ -173,7 +173,7 @@ class Folder:
             return None
 
     def _data(self, path: Path) -> bytes | None:
-        """Read a file; return None if it does not exist."""
+        """Read the bytes of a file; return None if it does not exist."""
         try:
             with path.open("rb") as file:
                 return file.read(MAX_BYTES + 1)

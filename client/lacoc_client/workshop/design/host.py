@@ -25,7 +25,7 @@ class Host(Protocol):
     """Takes tables to a court, to practise there; None: pages can't do this."""
 
     async def enter(self, hello: requests.Hello, where: str) -> "LetIn":
-        """Let a page in.
+        """Let a page in, if it shows the right key, code or token.
 
         Args:
             hello: the page key, token, or class code and name that the page shows.
@@ -36,7 +36,7 @@ class Host(Protocol):
         """
 
     def leave(self, student: Student, viewer: Viewer) -> None:
-        """Remove a page that has gone."""
+        """Remove a page that was closed or has lost its connection."""
 
     def greet(self, student: Student, viewer: Viewer, lesson: bool) -> None:
         """Send a page everything that it needs after it was let in.
@@ -48,7 +48,7 @@ class Host(Protocol):
         """
 
     def learned(self, student: Student, trial: TrialReply | None = None) -> None:
-        """Tell all pages for which it matters that a student did something.
+        """Tell the pages that show a student's progress that the student did something.
 
         Args:
             student: the student.

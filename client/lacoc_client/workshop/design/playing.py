@@ -1,4 +1,4 @@
-"""Takes a table of /design to a court: to `lacoc practice`."""
+"""Lets a student play with a table of /design, at the court of `lacoc practice`."""
 
 import threading
 from pathlib import Path
@@ -19,7 +19,7 @@ class Playing:
         self._lock = threading.Lock()
 
     def open(self, files: SeatFiles) -> str:
-        """Hand files to the page of `lacoc practice`; first start it if needed.
+        """Give files to the page of `lacoc practice`; first start the command if needed.
 
         The start takes some seconds. A page that is open already notices the new files, and asks
         whether to use them.
@@ -38,14 +38,14 @@ class Playing:
             return self._url
 
     def close(self) -> None:
-        """End the command, and delete the files."""
+        """End the running `lacoc practice`, and delete the files that it was given."""
         with self._lock:
             if self._child is not None:
                 self._child.close()
             self._folder.close()
 
     def _write(self, files: SeatFiles) -> list[Path]:
-        """Write the files; return the paths of the robot file, level A and level B."""
+        """Write the robot and gait files; return the paths of robot file, level A and level B."""
         paths = [self._folder.path / name for name in USUAL_NAMES]
         for path, file in zip(paths, files, strict=True):
             if file is None:

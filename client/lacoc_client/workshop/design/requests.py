@@ -49,7 +49,7 @@ class Hello(Ask, frozen=True, kw_only=True, tag="hello"):
 
 
 class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
-    """Read a file of the folder."""
+    """Read a gait or robot file of the folder."""
 
     name: Name
 
@@ -67,7 +67,7 @@ class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
 
 
 class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
-    """Save a table, or the text of a robot file."""
+    """Save a table, or the text of a robot file, into the folder."""
 
     name: Name
     table: FileTable | None = None
@@ -79,14 +79,14 @@ class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
 
 
 class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
-    """Make a file to download."""
+    """Make a gait or robot file for the user to download."""
 
     name: Name
     table: FileTable
 
 
 class RobotAsk(Ask, frozen=True, kw_only=True, tag="robot"):
-    """Ask the studio what a robot file describes."""
+    """Ask the studio for the sizes and the shape of the robot that a robot file describes."""
 
     robot: SentFile | None = None
 
@@ -103,14 +103,14 @@ class SetRobotAsk(Ask, frozen=True, kw_only=True, tag="set_robot"):
 
 
 class Foretold(msgspec.Struct, frozen=True, kw_only=True):
-    """A guess of the student about the next trial."""
+    """What the student guesses about the next trial."""
 
     about: Literal["pace", "way"]
     said: Pace | Way
 
 
 class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
-    """Let the robot walk."""
+    """Let the robot walk with a table, in a trial."""
 
     table: FileTable | None = None
     """None: the sample gait of the robot."""
@@ -124,7 +124,7 @@ class TrialAsk(Ask, frozen=True, kw_only=True, tag="trial"):
 
 
 class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
-    """Change the table that several pages share."""
+    """Report a change of the table that several pages share."""
 
     table: Name
     """Id of the table; "": the student's own table."""
@@ -141,7 +141,7 @@ class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
 
 
 class PlaceAsk(Ask, frozen=True, kw_only=True, tag="place"):
-    """Tell the other pages of the table which cell this page is at."""
+    """Tell the other pages that have this table open which cell the user of this page is at."""
 
     row: Annotated[int, msgspec.Meta(ge=-1, lt=MAX_KEYS * MAX_POSTURES_PER_KEY)]
     col: Annotated[int, msgspec.Meta(ge=-1, lt=100)]
@@ -173,7 +173,7 @@ class CheckAsk(Ask, frozen=True, kw_only=True, tag="check"):
 
 
 class PlayAsk(Ask, frozen=True, kw_only=True, tag="play"):
-    """Check the table, and take it to a court, to practise."""
+    """Check the table, and give it to a court, where the student can play with it."""
 
     table: FileTable
     robot: SentFile | None = None
@@ -185,7 +185,7 @@ class HandOnAsk(PlayAsk, frozen=True, kw_only=True, tag="hand_on"):
 
 
 class PhaseAsk(Ask, frozen=True, kw_only=True, tag="phase"):
-    """Go to a phase, forward or back."""
+    """Go to another phase, forward or back."""
 
     number: _PhaseNumber
 
@@ -239,7 +239,7 @@ class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):
 
 
 class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
-    """Ask the coach which numbers matter, and for better numbers."""
+    """Ask the coach which numbers of a key matter, and for better numbers."""
 
     job: _Job
     """Name that the page chooses for the search; reports on the search and `cancel` use it too."""
@@ -254,7 +254,7 @@ class CoachAsk(Ask, frozen=True, kw_only=True, tag="coach"):
 
 
 class MapAsk(Ask, frozen=True, kw_only=True, tag="map"):
-    """Ask the coach for a map of gaits: one for each speed and arousal (how excited it looks)."""
+    """Ask the coach for gaits of many speeds and arousals (how excited the robot looks)."""
 
     job: _Job
     """Name of the search; see `CoachAsk`."""
@@ -286,7 +286,7 @@ class VariantsAsk(Ask, frozen=True, kw_only=True, tag="variants"):
 
 
 class CancelAsk(Ask, frozen=True, kw_only=True, tag="cancel"):
-    """End a search of this page early."""
+    """End early a search of the coach that this page asked for."""
 
     job: _Job
 
@@ -327,7 +327,7 @@ _asked: msgspec.msgpack.Decoder[Asked] = msgspec.msgpack.Decoder(Asked)
 
 
 def read(data: bytes) -> Asked:
-    """Decode a request of a page.
+    """Decode a request of a /design page.
 
     Raises:
         Unreadable: if the bytes are not a known request, or too long for their kind of request.
@@ -336,7 +336,11 @@ def read(data: bytes) -> Asked:
 
 
 def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
-    """Decode a request with this decoder; raises the same error as `read`."""
+    """Decode a request with this decoder.
+
+    Raises:
+        Unreadable: if the decoder can't decode it.
+    """
     try:
         if len(data) > REQUEST_BYTES:
             most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES

@@ -19,10 +19,10 @@ PATH = "/design"
 
 
 def design_site(designer: Designer, files: PageFiles) -> ASGIApp:
-    """Make the application of a gateway with /design and the lesson of one leg.
+    """Make the web application of a gateway with /design and the lesson of one leg.
 
     Args:
-        designer: the folder and the studio, which its pages share.
+        designer: has the folder and the studio that all pages share.
         files: the built pages.
     """
 

@@ -20,7 +20,7 @@ legs, so without a limit one small message could make a whole class wait for min
 
 
 class FileRow(msgspec.Struct, frozen=True, kw_only=True):
-    """One posture of a table."""
+    """One posture (row) of a table on the page."""
 
     key: _Digit
     posture: _Index = 0
@@ -30,7 +30,7 @@ class FileRow(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FileTable(msgspec.Struct, frozen=True, kw_only=True):
-    """The table of a gait file."""
+    """The table of a gait file, as the page has it."""
 
     kind: Literal["postures", "locomotion"]
     legs: Annotated[int, msgspec.Meta(ge=1, le=_MOST_LEGS)]

@@ -1,4 +1,4 @@
-"""The six phases of the workshop (4-2) as steps with evidence (docs/studio.md 7).
+"""The six phases of the workshop as tasks that evidence shows to be done (docs/studio.md 7).
 
 `evidence` has the kinds of evidence of what students do. `facts` has what trials and edits show.
 `predicates` has general rules that count evidence, and `conditions` has the rules of the phases.

@@ -45,7 +45,7 @@ _TABLES = (
 
 
 class Kept(NamedTuple):
-    """A piece of evidence in the file."""
+    """A piece of evidence as it is in the class file."""
 
     number: int
     """Number of this evidence among all of the class, in the order of writing, from 1."""
@@ -89,7 +89,7 @@ class ClassFile:
     def add(
         self, student: str, evidence: Evidence, at_s: float, documents: Iterable[Document] = ()
     ) -> int:
-        """Write evidence, and documents with it; return the number of the evidence.
+        """Write evidence to the class file, and documents with it; return the evidence's number.
 
         Raises:
             sqlite3.Error: if the file can't be written; `problem` says why.
@@ -123,7 +123,7 @@ class ClassFile:
         return dict(rows.fetchall())
 
     def write_documents(self, documents: Iterable[Document]) -> None:
-        """Write the newest content of documents; raises the same error as `add`."""
+        """Write the newest content of documents; raise the same error as `add`."""
         with self._db:
             self._write_documents(documents)
 
@@ -142,7 +142,7 @@ class ClassFile:
         return list(_readable(rows))
 
     def documents(self) -> list[Document]:
-        """Read the newest documents of everybody."""
+        """Read the newest content of all documents of the class."""
         rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
         return [Document(*row) for row in rows]
 
@@ -154,7 +154,7 @@ class ClassFile:
         self._db.execute("PRAGMA wal_checkpoint(TRUNCATE)")  # the log still has it otherwise
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the class file."""
         self._db.close()
 
     def problem(self, error: sqlite3.Error) -> Damaged | UserError:
@@ -233,5 +233,5 @@ def _escaped(name: str) -> str:
 
 
 def _row(evidence: Evidence) -> tuple[str, str]:
-    """Return the kind and the body of evidence, for the columns of the file."""
+    """Return the kind of evidence and the rest of it as JSON, for two columns of the file."""
     return kind_of(evidence), to_json(evidence).decode()

@@ -21,14 +21,14 @@ def foot_guess(one: Evidence) -> bool | None:
 
 
 def differs_from_sample(one: Evidence) -> Iterator[tuple[None, str]]:
-    """Yield each visible difference of a walk from the walk with the sample gait."""
+    """Yield each visible difference of the student's walk from the walk with the sample gait."""
     if isinstance(one, Compared) and one.against == SAMPLE:
         for difference in one.differs:
             yield None, difference
 
 
 def are_two_postures(facts: TrialFacts) -> float:
-    """Return 1 if the last two keys were two different postures of level A, else 0."""
+    """Return 1 if the last two keys of a trial are two different keys of level A, else 0."""
     last = facts.keys[-2:]
     return float(len(set(last)) == 2 and all(key.startswith("A") for key in last))
 

@@ -84,7 +84,7 @@ class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
 
 
 class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
-    """The student guessed the effect of a change, and then saw the effect."""
+    """The student guessed what a change of the table would do, and then saw it."""
 
     about: Literal["foot", "pace", "way"]
     """What was guessed: where a foot goes (`facts.FootWay`), whether the robot becomes faster
@@ -106,12 +106,12 @@ class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
 
     @property
     def right(self) -> bool:
-        """Whether the student was right."""
+        """Whether the student guessed right."""
         return self.said in self.was
 
 
 class TriedNumber(msgspec.Struct, frozen=True, array_like=True):
-    """A number of a tried table that differs from the robot's start posture."""
+    """A number of a table in a trial that differs from the robot's start posture."""
 
     key: int
     posture: int
@@ -223,7 +223,7 @@ def to_json(evidence: Evidence) -> bytes:
 
 
 def kind_of(evidence: Evidence) -> str:
-    """Return the kind of evidence, as in the field "kind" of its JSON."""
+    """Return the kind of a piece of evidence, as in the field "kind" of its JSON."""
     return str(evidence.__struct_config__.tag)
 
 
@@ -238,7 +238,7 @@ def from_json(data: bytes | str) -> Evidence:
 
 
 def edited(before: Rows, after: Rows, version: str, by: By) -> Edited | None:
-    """Find what an edit changed; None if it changed no angle.
+    """Return an edit of a table as evidence; None if it changed no angle.
 
     Args:
         before: the table before the edit.

@@ -70,7 +70,7 @@ class TrialFacts(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class _FactFigures(msgspec.Struct, frozen=True, kw_only=True):
-    """The figures of a trial from which the facts are computed."""
+    """The figures in a studio's reply from which the facts of a trial are computed."""
 
     seconds: float
     cycles: int
@@ -210,7 +210,7 @@ def _array(data: bytes, kind: str, ticks: int) -> npt.NDArray[Any]:
 
 
 def _counts(feet: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
-    """Return how many feet are down in each tick."""
+    """Return how many feet are on the floor in each tick."""
     counts: npt.NDArray[np.int64] = np.unpackbits(feet[:, np.newaxis], axis=1).sum(
         axis=1, dtype=np.int64
     )
@@ -237,7 +237,10 @@ def _most_common(values: npt.NDArray[Any]) -> tuple[int, int]:
 
 
 def _pressed(keys: str, reply: TrialReply) -> tuple[str, ...]:
-    """List the pressed keys, the last one from the reply; keys without a level are of level B."""
+    """List the keys pressed in a trial; the last one comes from the reply.
+
+    Keys without a level are of level B.
+    """
     found = [_KEY.fullmatch(word.strip()) for word in keys.split(",")]
     before = [f"{(key[1] or 'B').upper()}{key[2]}" for key in found[:-1] if key]
     return (*before, f"{'AB'[reply.level]}{reply.key}")

@@ -1,4 +1,4 @@
-"""The phases of workshop 3-1 and 4-2, with their tasks and evidence (docs/studio.md 7)."""
+"""The phases of the workshop, with their tasks and the evidence that they ask for."""
 
 from lacoc_client.workshop.phases.conditions import (
     IS_UPRIGHT,

@@ -83,7 +83,7 @@ class Different:
     """Takes how many things are missing in the fullest group; returns the sentence that says so."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Count the different things of each group; return the outcome of the largest group."""
+        """Count the different things of each group; return how far the fullest group is."""
         groups: defaultdict[Hashable, set[Hashable]] = defaultdict(set)
         for one in evidence:
             for group, thing in self.things(one):
@@ -104,7 +104,7 @@ class LastOf:
     sentence that says so."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Find the `last` answers in a row of which the most are right; return their outcome."""
+        """Return how far the rule is met by the `last` answers in a row of which most are right."""
         answers = [right for one in evidence if (right := self.answer(one)) is not None]
         runs = (answers[start : start + self.last] for start in range(len(answers)))
         return counted(max(map(sum, runs), default=0), self.right, self.lacks)
@@ -147,7 +147,7 @@ class TriedWhere:
     """Sentence that says what is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return the outcome of the trial that keeps most of the limits.
+        """Return how far the rule is met by the trial that keeps most of the limits.
 
         If several trials keep equally many, it is the last of these.
         """
@@ -167,7 +167,7 @@ class All:
         self.parts = parts
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Look at each rule; the share is the mean of the rules' shares."""
+        """Look at each of the rules; the share that is done is the mean of their shares."""
         return every([part.look(evidence) for part in self.parts])
 
 
@@ -176,12 +176,12 @@ def _share(outcome: Outcome) -> float:
 
 
 def counted(found: int, wanted: int, lacks: Lacks) -> Outcome:
-    """Return the outcome of a rule for which `wanted` things must be found."""
+    """Return how far a rule is met for which `wanted` things must be found."""
     return MET if found >= wanted else Outcome(found / wanted, (lacks(wanted - found),))
 
 
 def every(outcomes: Sequence[Outcome]) -> Outcome:
-    """Return the outcome of a rule for which several rules must be met."""
+    """Return how far a rule is met that asks for several rules, from the outcomes of these."""
     missing = tuple(dict.fromkeys(phrase for outcome in outcomes for phrase in outcome.missing))
     if not missing:
         return MET

@@ -83,7 +83,10 @@ def progress(
 
 
 def _may_change(phase: WorkshopPhase, before: StudentProgress, new: Sequence[Evidence]) -> bool:
-    """Return whether new evidence may change the outcome of a phase; much evidence can't."""
+    """Return whether new evidence may change how much of a phase is done.
+
+    Most evidence can't, and then nothing is computed again.
+    """
     is_met = before.outcomes[phase.number].met  # then it stays met
     return not is_met and phase.may_change(before.questions[phase.number], new)
 

@@ -69,7 +69,7 @@ class ClassStore:
 
     @property
     def trouble(self) -> Phrase | None:
-        """A sentence that says what is wrong with the file; None: nothing is wrong.
+        """A sentence that says what is wrong with the class file; None: nothing is wrong.
 
         It names a full disk until a write succeeds, and a damaged file until the store is closed.
         """
@@ -96,7 +96,7 @@ class ClassStore:
         return self._do(work, writes=True)
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
-        """Count a vote; for the result see `ClassFile.vote`."""
+        """Count a vote in a poll; the result is False if the student has voted in it before."""
         return self._do(lambda file: file.vote(student, poll, choice, at_s), writes=True)
 
     def votes(self, poll: str) -> "Future[dict[str, int]]":
@@ -104,7 +104,7 @@ class ClassStore:
         return self._do(lambda file: file.votes(poll))
 
     def evidence(self, student: str | None = None, after: int = 0) -> "Future[list[Kept]]":
-        """Read evidence; for arguments and result see `ClassFile.evidence`."""
+        """Read evidence of a student, or of all (None), whose number is larger than `after`."""
         return self._do(lambda file: file.evidence(student, after))
 
     def keep(self, document: Document) -> None:
@@ -123,7 +123,10 @@ class ClassStore:
             self._waiting.add((document.student, document.name))
 
     def write(self, document: Document) -> "Future[None]":
-        """Take a document as `keep` does, with the same errors, but write it at once."""
+        """Take the newest content of a document, and write it to the disk at once.
+
+        It raises the same errors as `keep`.
+        """
         self.keep(document)  # so that it is written later if the disk is full now
         return self._do(lambda file: file.write_documents([document]), writes=True)
 
@@ -141,13 +144,13 @@ class ClassStore:
         return self._do(work, writes=True)
 
     def documents(self, student: str | None = None) -> list[Document]:
-        """Return the newest documents of a student or of all (None), by student and name."""
+        """Return the newest documents of a student or of all (None), sorted by student and name."""
         with self._lock:
             documents = sorted(self._documents.items())
         return [document for (who, _), document in documents if student in (None, who)]
 
     def close(self) -> None:
-        """Write the documents that wait, and close the file."""
+        """Write the documents that are not on the disk yet, and close the file."""
         with self._lock:
             if not self._closed:
                 self._closed = True

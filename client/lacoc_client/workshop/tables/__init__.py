@@ -1,1 +1,4 @@
-"""Tables that several pages edit: `document` merges edits, `shared_table` sends them on."""
+"""Tables that several pages edit at once.
+
+`document` merges the pages' edits. `shared_table` sends each edit to the other pages.
+"""

@@ -44,11 +44,11 @@ class TableDocument:
 
     @property
     def entries(self) -> Mapping[str, Entry]:
-        """All entries by name, in a mapping that later merges do not change."""
+        """All entries of the table by name, in a mapping that later merges do not change."""
         return self._entries
 
     def merge(self, update: bytes, may_write: Callable[[int], bool] = lambda _: True) -> bool:
-        """Merge an update of a page; return whether it has changed an entry.
+        """Merge an update that a page sent; return whether it has changed an entry.
 
         Args:
             update: the update, as Yjs writes it.
@@ -92,14 +92,14 @@ class TableDocument:
         return len(self.state) > self._compact_bytes
 
     def fresh(self) -> "TableDocument":
-        """Return a document with the same entries and without earlier edits.
+        """Return a document with the same entries of the table and without earlier edits.
 
         It can't be merged with a page's edits.
         """
         return document_of(self._entries)
 
     def _check(self) -> None:
-        """Read the changed entries from the document and check them.
+        """Read the entries that were changed from the document, and check them.
 
         Raises:
             UserError: if the document is no table, or too large.
@@ -138,7 +138,7 @@ class TableDocument:
 
 
 def document_of(entries: Mapping[str, Entry]) -> TableDocument:
-    """Make a document with these entries and without earlier edits."""
+    """Make the document of a table that has these entries and no earlier edits."""
     return TableDocument(_state_of(entries))
 
 

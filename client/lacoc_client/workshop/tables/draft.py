@@ -30,7 +30,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
     """The robot file; None: the workshop's robot."""
 
     def files(self) -> SeatFiles:
-        """Return the files of a match: robot, postures and locomotion.
+        """Return the files with which the draft can play: robot, postures and locomotion.
 
         There is no locomotion file if keys use postures that the table does not have.
 

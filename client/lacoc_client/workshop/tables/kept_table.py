@@ -1,4 +1,4 @@
-"""Finds a student's table among the documents of a class file, also one of an earlier version."""
+"""Finds a student's table in a class file, also in one of an earlier version of the program."""
 
 from collections.abc import Iterable
 

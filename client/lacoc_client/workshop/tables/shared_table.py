@@ -1,4 +1,4 @@
-"""A table that several pages have open: merges and sends edits, keeps them, tells who is where."""
+"""A table that several pages have open: it merges, sends and keeps their edits."""
 
 import asyncio
 import time
@@ -101,7 +101,7 @@ class SharedTable:
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
-        """Return everything that a page needs to open the table."""
+        """Return everything that a page needs to show and edit this table."""
         return {
             "table": self.name,
             "epoch": self._epoch,
@@ -118,17 +118,17 @@ class SharedTable:
         self._tell_people()
 
     def show(self, viewer: Viewer, name: str) -> None:
-        """Add a page that had another table open, and send it this one."""
+        """Add a page that had another table open, and send it this table."""
         viewer.send(self._message({"state": self._document.state}))
         self.add(viewer, name)
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page."""
+        """Remove a page that has closed the table."""
         if self.people.pop(viewer, None) is not None:
             self._tell_people()
 
     def end(self) -> None:
-        """Drop a table that nobody has changed, because the last page of its student has gone."""
+        """Make a table empty again that nobody has changed, after its last page was closed."""
         if not self.is_touched:
             self._begin(TableDocument(), new_token())
 
@@ -178,7 +178,7 @@ class SharedTable:
         return {"seq": seq}
 
     def replace(self, document: TableDocument) -> None:
-        """Replace the document.
+        """Replace the whole document of the table.
 
         All pages open the new document, and add to it the edits that they had not sent.
         """
@@ -214,7 +214,7 @@ class SharedTable:
         """For each cell the number of the last update in which it was typed, and the page."""
 
     def _is_of(self, writer: int, viewer: Viewer) -> bool:
-        """Return whether a page may write under a page number (Yjs's client id).
+        """Return whether a page may send edits under a page number (Yjs's client id).
 
         If two pages wrote under the same number, the document would take the second page's edits
         for edits that it has already.
@@ -231,7 +231,7 @@ class SharedTable:
         return self._draft
 
     def _keep_draft(self, before: Mapping[str, Entry]) -> None:
-        """Note that the table has changed, so that the draft is old.
+        """Note that the table has changed, so that `draft` must be computed again.
 
         A change of anything else than numbers may make a table incomplete. Then the table as it was
         before the change becomes the draft.
@@ -243,7 +243,7 @@ class SharedTable:
         self._is_draft_old = True
 
     def _find_clashes(self, viewer: Viewer, told: TableUpdate) -> None:
-        """Tell two pages if both typed into the same cell before they saw each other's number."""
+        """Tell two pages if both typed into one cell before they received each other's text."""
         clashes: dict[Viewer, list[str]] = {}
         for cell in told.cells:
             seq, other = self._typed.get(cell, (0, viewer))

@@ -35,7 +35,7 @@ class ItemSpan(NamedTuple):
 
 
 class Update(NamedTuple):
-    """The edits of an update, and the edits that it needs."""
+    """The edits in an update, and the earlier edits that must be in the document already."""
 
     edits: tuple[ItemSpan, ...]
     needs: tuple[ItemSpan, ...]
@@ -88,9 +88,9 @@ class _Reader:
         self.at = 0
 
     def number(self) -> int:
-        """Read a number: seven bits from each byte.
+        """Read a number whose bytes have seven bits of it each.
 
-        The eighth bit says whether another byte follows.
+        The eighth bit of a byte says whether another byte follows.
         """
         value = shift = 0
         while True:
@@ -120,7 +120,7 @@ class _Reader:
         return Update(tuple(edits), tuple(needs))
 
     def _edit(self, needs: list[ItemSpan]) -> tuple[int, bool]:
-        """Read an edit; return how many edits it counts as, and whether it contains them.
+        """Read an edit or a gap; return for how many edits it stands, and False for a gap.
 
         Args:
             needs: to this list the edits are added to which this edit refers.

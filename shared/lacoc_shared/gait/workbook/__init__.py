@@ -1,4 +1,4 @@
-"""Loco-data.xlsx: postures in a workbook (workshop 4-1 and Fig. 4-1, rules 2).
+"""Loco-data.xlsx: a gait file of postures that is a workbook.
 
 People edit the sheet "EX (input)". The sheet "Loco-data" shows the same cells by formulas; a
 spreadsheet program can save it as text. LACOC reads the edited sheet itself.

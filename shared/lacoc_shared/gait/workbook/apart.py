@@ -51,7 +51,10 @@ def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
 
 
 class _ReaderProcess:
-    """The process that reads one workbook at a time; it is started again after an expensive one."""
+    """The process that reads workbooks, one at a time.
+
+    After a workbook that took much memory it is started again.
+    """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -82,7 +85,7 @@ class _ReaderProcess:
             return found
 
     def close(self) -> None:
-        """End the process."""
+        """End the process that reads workbooks."""
         with self._lock:
             self._end()
 
@@ -122,14 +125,14 @@ def _put(pipe: IO[bytes], message: bytes) -> None:
 
 
 def _take(pipe: IO[bytes]) -> bytes | None:
-    """Read a message; None: the other end was closed."""
+    """Read a message from a pipe; None: the other process has closed the pipe."""
     length = pipe.read(_LENGTH_BYTES)
     message = pipe.read(int.from_bytes(length)) if len(length) == _LENGTH_BYTES else b""
     return message if message and len(message) == int.from_bytes(length) else None
 
 
 def _serve() -> None:
-    """Read the workbooks that come through standard input until it is closed."""
+    """Read the workbooks that come through standard input, and answer each; end with the input."""
     sys.modules["numpy"] = None  # type: ignore[assignment] # openpyxl would load it for nothing
     answers, sys.stdout = sys.stdout.buffer, sys.stderr  # whatever else prints, goes elsewhere
     _limit_memory()

@@ -48,7 +48,7 @@ _WANTED = say("gait.workbook")
 
 
 class Odd(StrEnum):
-    """Oddities of a cell."""
+    """What may be odd about a cell that should hold an angle."""
 
     UNCALCULATED = "uncalculated"
     """The cell has a formula without a stored value."""
@@ -59,7 +59,7 @@ class Odd(StrEnum):
 
 
 class WorkbookSheet(msgspec.Struct, frozen=True):
-    """The cells of a sheet as text; only those that are read."""
+    """The cells of a workbook's sheet as text, as far as LACOC reads them."""
 
     title: str
     rows: list[list[str]]
@@ -69,7 +69,7 @@ class WorkbookSheet(msgspec.Struct, frozen=True):
 
 
 def read_sheet(data: bytes, name: str) -> WorkbookSheet:
-    """Read the sheet that has the gait.
+    """Read the sheet of a workbook that has the gait.
 
     Args:
         data: the .xlsx file.
@@ -91,12 +91,12 @@ def read_sheet(data: bytes, name: str) -> WorkbookSheet:
 
 
 def refused(name: str, found: Phrase, expected: Phrase) -> FileRefused:
-    """Return the refusal of a whole file."""
+    """Make the error that refuses a whole workbook: what was found in it, and what was expected."""
     return FileRefused([Mistake(file=name, found=found, expected=expected)])
 
 
 def _harmless(data: bytes, name: str) -> bytes:
-    """Check the zip's list of files before it is unpacked, and the XML before openpyxl reads it.
+    """Check a workbook's zip before it is unpacked, and its XML before openpyxl reads it.
 
     Returns:
         The workbook, in the form that openpyxl reads.
@@ -149,7 +149,7 @@ def _transitional(content: dict[str, bytes]) -> bytes:
 
 
 class _TooMuchError(Exception):
-    """A part of the workbook is too large or forbidden; `found` says which."""
+    """Raised when a part of a workbook is too large or forbidden; `found` says which."""
 
     def __init__(self, found: Phrase) -> None:
         super().__init__()
@@ -171,7 +171,7 @@ class _Counter:
         """Number of characters of the formula so far."""
 
     def look_at(self, part: bytes) -> None:
-        """Count one XML file of the workbook; if it is not valid XML, up to the error.
+        """Count the work in one XML file of the workbook; if it is invalid, up to the error.
 
         Raises:
             _TooMuchError: if there is too much of something, or entities are defined.
@@ -215,7 +215,7 @@ class _Counter:
 
 
 def _sheet(data: bytes, name: str) -> WorkbookSheet:
-    """Read the cells: their values; if a value is missing, whether there is a formula."""
+    """Read the cells of the sheet that has the gait: values, and formulas without a value."""
     import openpyxl  # only the process that reads needs it
 
     books = [
@@ -250,7 +250,7 @@ def _sheet(data: bytes, name: str) -> WorkbookSheet:
 
 
 def _title(titles: list[str], name: str) -> str:
-    """Return the title of the sheet to read.
+    """Return the title of the sheet that has the gait.
 
     Spaces, full-width letters and capitals make no difference.
     """
@@ -276,7 +276,7 @@ def _kind(cell: Any, formula: object) -> Odd | None:
 
 
 def _text(value: object, formula: object) -> str:
-    """Return a cell as text; its formula if no value was stored."""
+    """Return a cell's value as text; if no value was stored, its formula."""
     match value:
         case None:
             return "" if formula is None else str(formula)[:_MAX_TEXT]

@@ -1,4 +1,4 @@
-"""Reads and writes Loco-data workbooks, and tells workbooks from gait files that are text."""
+"""Reads and writes gait files that are workbooks, and tells them from gait files that are text."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -70,7 +70,7 @@ def read_workbook(
     range_deg: Range = RANGE_DEG,
     notes: list[Phrase] | None = None,
 ) -> PostureTable:
-    """Read a Loco-data workbook: the values of its sheet "EX (input)".
+    """Read the postures of a workbook: the values of its sheet "EX (input)".
 
     Args:
         data: the .xlsx file, at most 1 MiB. If "Loco-data" is the only sheet, it is read.
@@ -106,12 +106,12 @@ def read_workbook(
 
 
 def sheet_rows(sheet: WorkbookSheet) -> list[Row]:
-    """Return the rows of a workbook's sheet."""
+    """Return the rows of a workbook's sheet, as `reader` takes them."""
     return [Row(number, row) for number, row in enumerate(sheet.rows, start=1)]
 
 
 def write_workbook(table: PostureTable, legs: Sequence[str]) -> bytes:
-    """Write a Loco-data workbook, ready to edit; spreadsheets keep 15 digits of a number.
+    """Write postures as a workbook, ready to edit; spreadsheets keep 15 digits of a number.
 
     Args:
         table: the postures.
@@ -140,7 +140,7 @@ def _cell_name(title: str, row: int, column: int) -> str:
 
 
 def _at_cell(mistake: Mistake, title: str, odd: Mapping[tuple[int, int], Odd]) -> Mistake:
-    """Add to a mistake the name of its cell, and what is odd about the cell."""
+    """Add to a mistake the name of the workbook's cell, and what is odd about the cell."""
     if mistake.row is None or mistake.column is None:
         return msgspec.structs.replace(mistake, field=title)
     found = mistake.found

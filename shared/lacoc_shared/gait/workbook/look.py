@@ -1,4 +1,4 @@
-"""The look of a Loco-data workbook (workshop Fig. 4-1): sheets, their colours and input help."""
+"""The look of a workbook of postures: its sheets, their colours, and checks of what is typed."""
 
 from collections.abc import Sequence
 
@@ -70,7 +70,7 @@ def _write_edited(
 
 
 def _add_help(book: Workbook, sheet: Worksheet, last_posture: int, last_column: int) -> None:
-    """Let spreadsheet programs reject wrong numbers that are typed, and mark pasted ones."""
+    """Let spreadsheet programs reject wrong numbers that are typed, and colour those pasted."""
     limit = number_text(RANGE_DEG)
     angles = (1, 1, last_posture, last_column)
     sheet.data_validation(

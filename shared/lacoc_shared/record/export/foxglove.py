@@ -88,7 +88,7 @@ def foxglove(record: Record) -> bytes:
 
 
 def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Message]]:
-    """Yield everything that is written, as (beat, topic, message)."""
+    """Yield all messages of the exported file, each with its beat and topic."""
     for event in record.events:
         time = _time(started_ns + event.beat * BEAT_NS)
         yield event.beat, "/events", _log(event, time)
@@ -123,7 +123,7 @@ def _log(event: Event, time: Timestamp) -> Log:
 
 
 class _ScenePicture:
-    """Draws a scene with the colours of a sheet, as messages for Foxglove."""
+    """Draws the scene of a match in the colours of its teams, as messages for Foxglove."""
 
     def __init__(self, scene: Scene, sheet: Sheet) -> None:
         self._scene = scene
@@ -134,7 +134,7 @@ class _ScenePicture:
     def transforms(
         self, frames: Sequence[tuple[int, Frame]], started_ns: int
     ) -> Iterator[FrameTransforms]:
-        """Yield the world poses of all moving bodies, frame by frame."""
+        """Yield for each frame the poses of all moving bodies in the world."""
         if not frames:
             return
         numbers = np.array([np.frombuffer(frame.poses, "<f4") for _, frame in frames])
@@ -156,7 +156,7 @@ class _ScenePicture:
             )
 
     def shapes(self, time: Timestamp) -> SceneUpdate:
-        """Return all shapes except those of markers.
+        """Return a message with all shapes of the scene except those of markers.
 
         They replace everything that was drawn before.
         """
@@ -173,7 +173,12 @@ class _ScenePicture:
         )
 
     def board(self, packed: bytes, time: Timestamp) -> SceneUpdate:
-        """Return all markers in the states of `Frame.markers`; they replace those drawn before."""
+        """Return a message with all markers as a frame has them; they replace those drawn before.
+
+        Args:
+            packed: the markers' states, as in `Frame.markers`.
+            time: the time of the frame.
+        """
         markers = self._sheet.markers
         states = unpack_states(packed, len(markers))
         geoms: list[list[SceneGeom]] = [[] for _ in markers]
@@ -190,7 +195,7 @@ class _ScenePicture:
         )
 
     def _entity(self, name: str, geoms: Sequence[SceneGeom], time: Timestamp) -> SceneEntity:
-        """Make one entity from shapes on one body, or from shapes that never move."""
+        """Make an entity for Foxglove: the shapes of one body, or shapes that never move."""
         moves = any(geom.body in self._kinematics.moving for geom in geoms)
         primitives: list[Any] = [
             primitive for geom in geoms for primitive in self._primitives(geom, moves)
@@ -206,9 +211,9 @@ class _ScenePicture:
         )
 
     def _primitives(self, geom: SceneGeom, moves: bool) -> Iterator[Any]:
-        """Yield the primitives of a shape, in its body's frame.
+        """Yield the simple shapes of which a shape is drawn, such as a cylinder and two spheres.
 
-        If it never moves, in the world's frame.
+        They are in the frame of the shape's body; if the shape never moves, in the world's frame.
         """
         pos, quat = np.array(geom.pos), np.array(geom.quat)
         if not moves:
@@ -258,7 +263,7 @@ def _time(time_ns: int) -> Timestamp:
 
 
 def _everything(time: Timestamp) -> SceneEntityDeletion:
-    """Make the message that deletes everything of a topic."""
+    """Make the message that deletes everything drawn on a topic before."""
     return SceneEntityDeletion(timestamp=time, type=SceneEntityDeletion.ALL)
 
 

@@ -22,7 +22,7 @@ def joints_per_seat(sheet: Sheet) -> tuple[int, ...]:
 
 
 def split_poses(poses: bytes, joints: Sequence[int]) -> tuple[Array, ...]:
-    """Split `Frame.poses` by seat.
+    """Split `Frame.poses` into one array for the robot of each seat.
 
     Args:
         poses: as in a frame; not empty.
@@ -44,7 +44,7 @@ def split_poses(poses: bytes, joints: Sequence[int]) -> tuple[Array, ...]:
 
 
 class ForwardKinematics:
-    """Computes the poses of the bodies of a scene.
+    """Computes the poses of the bodies of a scene from the poses in a frame.
 
     Args:
         scene: as the court sent it; every body comes after its parent.
@@ -135,7 +135,7 @@ def euler_zyx(quat: Array) -> Array:
 
 
 def _turn(axis: Sequence[float], angle_rad: Array) -> Array:
-    """Return the quaternions (..., 4) of turns about an axis of unit length."""
+    """Return the quaternions (..., 4) that turn by these angles about an axis of unit length."""
     half = np.asarray(angle_rad)[..., None] / 2
     return np.concatenate([np.cos(half), np.sin(half) * np.array(axis)], axis=-1)
 

@@ -1,4 +1,4 @@
-"""Pos-data.txt: one robot's path through a match, for a spreadsheet (rules 2, workshop 4-4)."""
+"""Pos-data.txt: how one robot moved in a match, tick by tick, as a table for a spreadsheet."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ class PosData:
         self._tick = 0
 
     def add(self, frame: Frame) -> None:
-        """Add a frame: it becomes a row if physics ran in its beat.
+        """Add a frame; it becomes a row of the table if physics ran in its beat.
 
         A frame older than the last one is ignored.
 

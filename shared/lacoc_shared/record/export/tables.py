@@ -14,7 +14,7 @@ from lacoc_shared.words import render, say
 
 
 def pos_data(record: Record, seat: str) -> bytes:
-    """Make the Pos-data.txt of a seat (rules 2).
+    """Make the table Pos-data.txt: how the robot of a seat moved, tick by tick.
 
     If a team joins during the match with a robot that has another number of joints, all earlier
     rows are dropped.
@@ -62,7 +62,7 @@ def events_csv(record: Record) -> bytes:
 
 
 def result_json(record: Record) -> bytes:
-    """Return the result as JSON.
+    """Return the result of a match as JSON.
 
     It has the entries of `Result` and two more: `played_s` is `clock_s` plus the time that the
     referee gave; `health` says how well the match ran, and is null if no court measured it.
@@ -83,7 +83,7 @@ def result_json(record: Record) -> bytes:
 
 
 def seat_index(record: Record, seat: str) -> int:
-    """Return the index of a seat.
+    """Return the index of a seat among the seats of a match.
 
     Raises:
         UserError: if the match has no such seat; the message lists the seats it has.

@@ -1,4 +1,4 @@
-"""Cuts the messages that a page would get into pieces of one second. No I/O."""
+"""Collects the messages that a page would get into pieces of one second. No I/O."""
 
 import secrets
 from collections import deque
@@ -27,7 +27,7 @@ class Piece(msgspec.Struct, array_like=True, frozen=True):
 
 
 class Cutter:
-    """Takes the place of a page's socket, and cuts the messages to the page into pieces.
+    """Takes the place of a page's WebSocket, and collects each second's messages into a piece.
 
     Piece `n` has the messages of second `n` of the run. The bytes of a piece never change. Each run
     has a random name, so no cache can confuse it with another run.
@@ -51,31 +51,31 @@ class Cutter:
 
     @property
     def keeps_up(self) -> bool:
-        """True: a cutter takes every message at once."""
+        """Always true: pieces take every message at once."""
         return True
 
     def watch_closely(self) -> None:
-        """Do nothing: nobody steers a robot through a cutter."""
+        """Do nothing: pages that fetch pieces steer no robot."""
 
     def write(self, framed: bytes) -> None:
-        """Put a message into the piece of this second."""
+        """Add a message to the piece of the present second."""
         now_ms = self._close()
         self._then.append((now_ms - self._closed * PIECE_MS, wire.inside(framed)))
         self._backlog.take(framed)
 
     def closed(self) -> int:
-        """Return how many pieces are complete; the newest complete one has this number less one."""
+        """Return how many pieces are complete; the number of the newest of them is one less."""
         self._close()
         return self._closed
 
     def find(self, number: int) -> PageFile | None:
-        """Return a piece; None if it is not complete yet, or is no longer kept."""
+        """Return a piece by its number; None if it is not complete yet, or is no longer kept."""
         self._close()
         index = number - self._closed + len(self._pieces)
         return self._pieces[index] if 0 <= index < len(self._pieces) else None
 
     def _close(self) -> int:
-        """Complete the pieces whose second is over; return the time since the run began [ms]."""
+        """Complete each piece whose second is over; return the time since this run began [ms]."""
         now_ms = int(1000 * (self._clock() - self._began_s))
         # After a long silence only the newest of the empty pieces are worth their bytes.
         first = max(self._closed, now_ms // PIECE_MS - PIECES_KEPT)

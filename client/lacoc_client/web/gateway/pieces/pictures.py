@@ -1,4 +1,4 @@
-"""What is cut into pieces while pages ask for it: the director's two pictures, and each court."""
+"""What pages can fetch in pieces of a second: the director's two pictures, and each court."""
 
 import asyncio
 import time
@@ -27,7 +27,7 @@ class _CutPicture:
 
 
 class Pictures:
-    """Starts and ends the cutting of pictures into pieces; used from the event loop only.
+    """Begins and stops to make pieces of pictures; used from the event loop only.
 
     A picture is a court, or one of the two pictures that the director fills.
 
@@ -40,7 +40,7 @@ class Pictures:
         self._cut: dict[str, _CutPicture] = {}
 
     def find(self, name: str) -> Cutter:
-        """Return the cutter of a picture; begin to cut the picture if it is not being cut.
+        """Return the object that makes the pieces of a picture; make it if there is none.
 
         Args:
             name: `director`, `aside`, `court` (the first court) or `court/NAME`.
@@ -54,14 +54,14 @@ class Pictures:
         return found.cutter
 
     def known(self, name: str) -> Cutter | None:
-        """Return the cutter of a picture; None if the picture is not being cut."""
+        """Return the object that makes the pieces of a picture; None if there is none now."""
         found = self._known(name)
         return None if found is None else found.cutter
 
     def audience(self, name: str) -> Audience | None:
-        """Return the pages that see the same court as a picture.
+        """Return the pages that see the court which a picture shows.
 
-        None: the picture is not being cut.
+        None: no pieces of this picture are made now.
         """
         found = self._cut.get(name)
         if found is None:
@@ -71,7 +71,7 @@ class Pictures:
         return self._courts.find(name.partition("/")[2] or None)[0].audience
 
     async def forget(self) -> None:
-        """Stop cutting pictures that nobody asks for; runs until it is cancelled."""
+        """Stop making pieces of pictures that nobody asks for; runs until it is cancelled."""
         while True:
             await asyncio.sleep(UNASKED_S / 4)
             old_s = time.monotonic() - UNASKED_S

@@ -1,4 +1,4 @@
-"""The routes of pieces: which pieces there are, each piece, and reports from those who watch."""
+"""The routes for pieces: the list of pieces, each piece, and reports of pages that watch."""
 
 import re
 import time
@@ -28,7 +28,7 @@ places many pages would come and be refused."""
 
 
 class PiecesNow(msgspec.Struct, frozen=True):
-    """Which pieces of a picture can be fetched now."""
+    """Which pieces of a match pages can fetch now."""
 
     run: str
     """Name of the run. A new run begins when the gateway starts, or when somebody asks again after
@@ -42,13 +42,13 @@ class PiecesNow(msgspec.Struct, frozen=True):
 
 
 class Here(msgspec.Struct, frozen=True):
-    """The report of a page that fetches pieces: it is there, and cheered so often, by symbol."""
+    """The report of a page that fetches pieces: that it is there, and how often it cheered."""
 
     cheers: Annotated[list[Annotated[int, msgspec.Meta(ge=0)]], msgspec.Meta(max_length=SYMBOLS)]
 
 
 def piece_routes(courts: Courts, pictures: Pictures, crowd: Crowd) -> list[BaseRoute]:
-    """Return the routes of pieces.
+    """Return the routes on which pages fetch the pieces of a match.
 
     A page that watches in pieces does not count as a spectator with a place. A cache on the way can
     answer its requests for pieces.

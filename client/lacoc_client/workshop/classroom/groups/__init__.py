@@ -1,1 +1,1 @@
-"""Groups of a class: two to four students at one table (workshop 4-2)."""
+"""Groups of a class: two to four students share one table (section 4-2 of the workshop)."""

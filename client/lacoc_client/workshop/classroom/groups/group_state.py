@@ -1,4 +1,4 @@
-"""The state of a group: its members, their roles, and the words for its way of walking."""
+"""The state of a group: its members, their roles, and the words for how its robot should walk."""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal
@@ -11,7 +11,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 Role = Literal["", "forward", "turn"]
-"""What a member designs (workshop 4-2): "forward" the rows 1 to 4, "turn" the rows 5 to 8."""
+"""What a member designs: "forward" the rows 1 to 4, "turn" the rows 5 to 8 of the table."""
 
 MEMBERS_MOST = 4
 GROUPS_MOST = 50
@@ -45,7 +45,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
     """The last table that the teacher handed out to this group."""
 
     def joined(self, member: str) -> "GroupState":
-        """Return the group with one more member.
+        """Return the group after a student has joined it.
 
         Raises:
             UserError: if the group is full.
@@ -57,7 +57,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
         return msgspec.structs.replace(self, members=(*self.members, member))
 
     def left(self, member: str) -> "GroupState":
-        """Return the group without a member; the words that the member proposed stay."""
+        """Return the group after a member has left it; the words that the member proposed stay."""
         return msgspec.structs.replace(
             self,
             members=tuple(one for one in self.members if one != member),
@@ -92,12 +92,12 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """The word with the most votes, of equal ones the first; "": no word has a vote."""
+        """The word with the most votes; of several, the first. "": no word has a vote."""
         counts = [(self.count(one.word), -at, one.word) for at, one in enumerate(self.words)]
         return max(counts)[2] if counts and max(counts)[0] else ""
 
     def count(self, word: str) -> int:
-        """Return how many votes a word has."""
+        """Return how many members have voted for a word."""
         return sum(vote == word for vote in self.votes.values())
 
 

@@ -68,7 +68,7 @@ class GroupTables:
         await self._delete(OF_GROUP + id_)
 
     def drafts(self) -> dict[str, Draft]:
-        """Return the newest table of each group that has one."""
+        """Return the newest table of each group that has one, by the id of the group."""
         drafts = {id_: table.draft for id_, table in self._tables.items()}
         return {id_: draft for id_, draft in drafts.items() if draft is not None}
 

@@ -37,7 +37,8 @@ class Groups:
 
     Args:
         store: opens the class file.
-        changed: called after each change; keeps the states, and tells the teacher.
+        changed: called after each change; it writes `states` to the class file, and tells the
+            teacher.
         students: all students, by `same_name` of the nickname.
     """
 
@@ -82,7 +83,7 @@ class Groups:
         return next(found, None)
 
     def find(self, name: str) -> GroupState:
-        """Return a group by name.
+        """Return the group with this name.
 
         Raises:
             UserError: if there is no group of this name.
@@ -124,7 +125,7 @@ class Groups:
             await self._tell()
 
     async def leave(self, student: ClassStudent) -> None:
-        """Take a student out of the group, back to the student's own table.
+        """Take a student out of the student's group, back to the student's own table.
 
         A group without members ends.
         """
@@ -157,7 +158,7 @@ class Groups:
         await student.diary.add(Named(word=word))
 
     async def hand_out(self, name: str, handed: Handed) -> None:
-        """Offer a table to the members of a group.
+        """Offer a gait's table to the members of a group.
 
         Raises:
             UserError: if there is no group of this name.
@@ -169,10 +170,10 @@ class Groups:
                 student.send(handed.message())
 
     def spend(self, student: ClassStudent) -> None:
-        """Count a change of groups that a student asks for.
+        """Count a request of a student to change a group.
 
         Raises:
-            UserError: if there were too many.
+            UserError: if this student, or the class, has made too many such requests lately.
         """
         own = self._own_allowances.setdefault(student.name, Allowance(_OWN_HZ, _OWN_BURST))
         now_s = time.monotonic()
@@ -230,7 +231,7 @@ class Groups:
         self.tell(state)
 
     async def _leave(self, student: ClassStudent) -> bool:
-        """Remove a student from the group; return whether the student was in one."""
+        """Remove a student from the student's group; return whether there was such a group."""
         state = self.of(student)
         if state is None:
             return False

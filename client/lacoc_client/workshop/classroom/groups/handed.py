@@ -17,5 +17,5 @@ class Handed(msgspec.Struct, frozen=True, kw_only=True):
     sequences: tuple[tuple[int, ...], ...] | None = None
 
     def message(self) -> bytes:
-        """Return the message that offers the table to a page."""
+        """Return the message that offers this table to a page."""
         return wire.map_message(MessageKind.HANDED, msgspec.structs.asdict(self))

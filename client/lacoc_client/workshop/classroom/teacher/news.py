@@ -15,7 +15,7 @@ from lacoc_shared.words import Phrase
 
 
 class Trouble(NamedTuple):
-    """Troubles of a class about which the teacher is told."""
+    """The troubles of a class that the teacher's page shows."""
 
     file: Phrase | None
     """What is wrong with the class file; None: nothing is wrong."""
@@ -30,7 +30,7 @@ def class_message(
     trouble: Trouble,
     cards: Sequence[Card] | None,
 ) -> bytes:
-    """Return the message about a class.
+    """Return the message that tells a teacher's page how the class stands.
 
     Args:
         state: settings and groups of the class, and what was handed out.
@@ -65,7 +65,7 @@ def class_message(
 
 
 def card_message(card: Card) -> bytes:
-    """Return the message about a student whose card has changed."""
+    """Return the message with a student's changed card."""
     return wire.map_message(MessageKind.CARD, msgspec.structs.asdict(card))
 
 

@@ -121,9 +121,9 @@ class TeacherPage:
         await self._class.hand_out(asked.title, table, asked.sequences, asked.group)
 
     async def _show(self, student: ClassStudent) -> dict[str, Any]:
-        """Let a student's robot walk with the newest table.
+        """Let a student's robot walk with the student's newest table.
 
-        Return robot, trial and table to show.
+        Return the robot, the trial and the table, for the page to show.
         """
         draft = _draft(student)
         file = draft.robot or self._class.robot
@@ -146,7 +146,7 @@ class TeacherPage:
         return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
 
     def _players(self) -> dict[str, SeatFiles]:
-        """Return the files of everybody who has a table, by nickname or by name of the group."""
+        """Return robot and gait files of everybody with a table, by name of student or group."""
         students = [one for one in self._class.students.values() if one.table is one.own]
         drafts = {one.name: one.draft for one in students if one.draft is not None}
         for name, draft in self._class.groups.drafts().items():

@@ -17,9 +17,9 @@ class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
 
 
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
-    """Offer a table to all students or to a group.
+    """Offer a gait's table to all students or to a group.
 
-    It is the given table, or that of a student, or else the sample.
+    The request contains the table or names a student whose table it is. Else it is the sample's.
     """
 
     title: Name = ""
@@ -31,7 +31,7 @@ class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
 
 
 class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
-    """Put a student into a group."""
+    """Put a student into a group, or let the student work alone."""
 
     student: Name
     group: Name
@@ -39,13 +39,13 @@ class SeatAsk(Ask, frozen=True, kw_only=True, tag="seat"):
 
 
 class LowerAsk(Ask, frozen=True, kw_only=True, tag="lower"):
-    """Take down the raised hand of a student."""
+    """Take down the hand that a student has raised for help."""
 
     student: Name
 
 
 class AdmitAsk(Ask, frozen=True, kw_only=True, tag="admit"):
-    """Allow one more browser to enter under a student's name."""
+    """Allow one more browser to enter under a student's name with the class code."""
 
     student: Name
 
@@ -61,19 +61,19 @@ class NewCodeAsk(Ask, frozen=True, kw_only=True, tag="new_code"):
 
 
 class ShowAsk(Ask, frozen=True, kw_only=True, tag="show"):
-    """Let a student's robot walk with the newest table, for the big screen."""
+    """Let a student's robot walk with the student's newest table, to show it on a big screen."""
 
     student: Name
 
 
 class ExportAsk(Ask, frozen=True, kw_only=True, tag="export"):
-    """Make a file of all evidence, or of all tables."""
+    """Make a file to download, with the evidence or the tables of all students."""
 
     what: Literal["evidence", "tables"]
 
 
 class TournamentAsk(Ask, frozen=True, kw_only=True, tag="play"):
-    """Start a tournament of the newest tables."""
+    """Start a tournament in which the students' newest tables play."""
 
     arena: Name
     rounds: Annotated[int, msgspec.Meta(ge=1, le=20)]
@@ -81,7 +81,7 @@ class TournamentAsk(Ask, frozen=True, kw_only=True, tag="play"):
 
 
 class StopPlayAsk(Ask, frozen=True, kw_only=True, tag="stop_play"):
-    """End the tournament early."""
+    """End the running tournament early."""
 
 
 Asked = (

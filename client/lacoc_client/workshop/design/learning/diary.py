@@ -1,4 +1,4 @@
-"""Keeps the evidence and the documents of one student."""
+"""Keeps the evidence and the documents (table, tokens) of one student."""
 
 import asyncio
 import time
@@ -90,12 +90,12 @@ class Diary:
         """The student's documents, as earlier runs of the program wrote them."""
 
     async def read(self) -> None:
-        """Read the evidence and documents of earlier runs, if there is a file."""
+        """Read the evidence and documents that earlier runs of the program kept, if any."""
         if await asyncio.to_thread(self._keeper.path.exists):
             await self._opened()
 
     def begin(self, evidence: Iterable[Evidence], documents: Iterable[Document]) -> None:
-        """Take over what the class file has of this student.
+        """Take over the evidence and documents that the class file has of this student.
 
         Args:
             evidence: the student's evidence, in order.
@@ -118,9 +118,10 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Count a vote and keep that the student voted.
+        """Count the student's vote whether walk A or B fits a word better.
 
-        Do nothing if it is a second vote in this poll.
+        Keep as evidence that the student voted. Do nothing if the student voted in this poll
+        before.
         """
         if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return

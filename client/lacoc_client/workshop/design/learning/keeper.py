@@ -9,7 +9,7 @@ from lacoc_shared.words import Phrase
 
 
 class Keeper:
-    """A file of evidence and tables; used from the event loop only.
+    """Keeps open the file of evidence and tables; used from the event loop only.
 
     If the file can't be opened, nothing is kept on the disk, and `trouble` says why.
 
@@ -25,7 +25,7 @@ class Keeper:
 
     @property
     def trouble(self) -> Phrase | None:
-        """Why nothing can be kept, or what happened to the file; None: all is well."""
+        """Why evidence can't be kept, or what happened to its file; None: all is well."""
         return self._refused if self._store is None else self._store.trouble
 
     async def opened(self) -> ClassStore | None:
@@ -39,7 +39,7 @@ class Keeper:
         return self._store
 
     async def close(self) -> None:
-        """Close the file."""
+        """Close the file of evidence and tables."""
         if self._opening is not None and not self._opening.done():
             await asyncio.wait({self._opening})
         if self._store is not None:

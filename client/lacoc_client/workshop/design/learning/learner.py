@@ -1,4 +1,4 @@
-"""Turns what one page does into evidence for the phases."""
+"""Turns what a student does on one page into evidence for the phases."""
 
 import asyncio
 import hashlib
@@ -52,14 +52,14 @@ class Judged(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EditReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to `EditAsk`."""
+    """The answer to a page that reported an edit of its table (`EditAsk`)."""
 
     guess: Judged | None = None
     """The judged guess; None: the student guessed nothing, or the guess can't be judged."""
 
 
 class AnswerReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to `AnswerAsk`: whether the student's answer was right."""
+    """What a page is told after the student answered the question of a phase (`AnswerAsk`)."""
 
     right: bool
     was: tuple[Phrase, ...]
@@ -69,7 +69,7 @@ class AnswerReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
-    """The answer to `CheckAsk`."""
+    """The answer to a page that had its table checked (`CheckAsk`)."""
 
     keys: int
     """Number of keys of level B; keys that share one sequence of postures count once."""
@@ -77,7 +77,7 @@ class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Learner:
-    """Makes evidence of what one page does; used from the event loop only.
+    """Makes evidence of what a student does on one page; used from the event loop only.
 
     Args:
         student: the student whose page it is.
@@ -96,7 +96,7 @@ class Learner:
         self._samples: dict[tuple[str, SentFile | None], TrialFacts | None] = {}
 
     async def edited(self, asked: requests.EditAsk) -> EditReply:
-        """Keep an edit as evidence, and judge the guess that the student made before it.
+        """Keep an edit as evidence; judge the guess of where the foot goes that came with it.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
@@ -120,7 +120,7 @@ class Learner:
         return EditReply(guess=judged)
 
     async def tried(self, asked: requests.TrialAsk, reply: TrialReply) -> TrialFacts | None:
-        """Keep a trial as evidence, and judge the guesses that were made before it.
+        """Keep a trial as evidence, and judge what the student guessed about it before.
 
         Returns:
             The facts of the trial; None: the trial is no evidence.
@@ -194,7 +194,9 @@ class Learner:
         return AnswerReply(right=is_right, was=was, because=question.because)
 
     async def stepped(self, asked: requests.LessonAsk) -> None:
-        """Keep a step or an answer in the lesson of one leg; reaching a step is not kept twice.
+        """Keep as evidence that the student reached a step of the lesson or answered a question.
+
+        Reaching the same step again is not kept.
 
         The first answer to a question counts for the step; a later answer counts as new work.
         """

@@ -20,7 +20,7 @@ class StudentRules(msgspec.Struct, frozen=True, kw_only=True):
     """Whether students read the explanation of a phase before its task."""
 
     def allows(self, size: str | None) -> bool:
-        """Return whether the coach may search for a change of this size.
+        """Return whether the teacher lets the coach search for a change of this size.
 
         Args:
             size: cell, three or table; None: the coach only says which numbers matter.

@@ -40,7 +40,7 @@ class Student:
 
     @property
     def rules(self) -> StudentRules:
-        """What the teacher allows."""
+        """What the teacher allows this student."""
         return self._rules()
 
     @property
@@ -49,7 +49,7 @@ class Student:
         return self.table.draft
 
     def open_kept(self) -> None:
-        """Open the table that the diary has kept; if there is none, the table stays as it is."""
+        """Load the student's table from the diary; if it has none, the table stays as it is."""
         kept = kept_table(self.diary.documents)
         if kept is not None:
             with suppress(UserError):  # of another version of this program
@@ -67,7 +67,7 @@ class Student:
             table.show(viewer, self.name)
 
     def tell(self) -> None:
-        """Tell all the student's pages how far the student is."""
+        """Tell all the student's pages how far the student is in the phases."""
         self.send(self.phases_message())
 
     def send(self, message: bytes) -> None:
@@ -76,7 +76,7 @@ class Student:
             viewer.send(message)
 
     def greet(self, viewer: Viewer, lesson: bool) -> None:
-        """Add a page that was let in, and send it what it shows first.
+        """Add a page of the student that was let in, and send it what it shows first.
 
         Args:
             viewer: the page.
@@ -89,7 +89,7 @@ class Student:
         self.table.add(viewer, self.name)
 
     def leave(self, viewer: Viewer) -> None:
-        """Remove a page that has gone."""
+        """Remove a page of this student, because the page was closed."""
         self.viewers.pop(viewer, None)
         self.lessons.pop(viewer, None)
         self.table.leave(viewer)
@@ -97,7 +97,7 @@ class Student:
             self.own.end()
 
     def send_away(self) -> None:
-        """Tell all pages that the student was deleted; from now on their requests are refused."""
+        """Tell the student's pages that the student was deleted; refuse their later requests."""
         message = wire.map_message(MessageKind.FORGOTTEN, {})
         for pages in (self.viewers, self.lessons):
             for viewer in (*pages,):

@@ -1,4 +1,4 @@
-"""The rows of a table that the keys of a trial use, as evidence."""
+"""Finds the rows and numbers of a table that a trial has used, for the trial's evidence."""
 
 import math
 
@@ -12,7 +12,7 @@ _SAME_DEG = 0.01
 
 
 def row_names(asked: TrialAsk, pressed: str) -> tuple[int, ...]:
-    """Return the names of the rows that a pressed key uses.
+    """Return the names of the table's rows that a key pressed in a trial uses.
 
     In a table of level A the names are its keys; in a table of level B they are 1, 2 ... in order.
     """
@@ -23,7 +23,7 @@ def row_names(asked: TrialAsk, pressed: str) -> tuple[int, ...]:
 
 
 def numbers(asked: TrialAsk, keys: tuple[str, ...], spec: RobotSpec) -> tuple[TriedNumber, ...]:
-    """Return those numbers in the rows of the pressed keys that differ from the start posture."""
+    """Return the numbers in the rows of the keys that differ from the robot's start posture."""
     legs = len(spec.legs)
     start_deg = [round(math.degrees(angle), 3) for angle in spec.start_posture]
     rows = {(row.key, row.posture): row for key in keys for row in _rows_of(asked, key)}

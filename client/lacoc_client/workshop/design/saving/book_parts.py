@@ -18,7 +18,7 @@ _BEFORE_CALCULATION = re.compile(
 
 
 class BookParts:
-    """The parts of a workbook.
+    """The parts of a workbook: the files in its zip.
 
     Args:
         data: the .xlsx file; the reader of gait files has checked it and found it harmless.
@@ -36,7 +36,7 @@ class BookParts:
         """Title of each worksheet -> name of its part, in the order of the workbook."""
 
     def part(self, name: str) -> bytes:
-        """Return the content of a part."""
+        """Return the content of a part of the workbook."""
         return self._parts[name]
 
     def defined_names(self) -> dict[str, str]:
@@ -46,7 +46,7 @@ class BookParts:
         return {one.get("name", ""): one.text or "" for one in found}
 
     def packed(self, changed: Mapping[str, bytes], *, formulas: bool, chain: bool) -> bytes:
-        """Return the workbook with changed parts.
+        """Return the bytes of the workbook after some of its parts were changed.
 
         Args:
             changed: name of each changed part -> its content.

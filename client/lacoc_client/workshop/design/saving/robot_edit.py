@@ -138,7 +138,7 @@ def _set(robot: Any, place: _NumberPlace, value: float, leg: int) -> None:
 
 
 def _set_leg(robot: Any, leg: Any, place: _NumberPlace, value: float) -> None:
-    """Put a number into its place in one leg."""
+    """Put a number into its place in the entries of one leg."""
     name, at = place.name, place.at
     if at is not None and name not in leg:
         name = "on_body"

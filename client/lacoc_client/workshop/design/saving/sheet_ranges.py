@@ -14,7 +14,7 @@ _SIZE = re.compile(r'(<(?:\w+:)?dimension\b[^>]*\sref=")([^"]*)"')
 
 
 def with_ranges(xml: bytes, layout: Layout) -> bytes:
-    """Return a sheet's XML with ranges that fit the changed table.
+    """Return a worksheet's XML in which ranges of cells fit the changed table.
 
     Input checks and colour rules of the table are extended to its new last row. Merged headings in
     the legend move down with it.
@@ -37,7 +37,7 @@ def with_ranges(xml: bytes, layout: Layout) -> bytes:
 
 
 def _longer(one: str, layout: Layout, last: int) -> str:
-    """Return a range, extended to row `last` if it ends at the table's old last row."""
+    """Extend a range of cells to row `last` if it ends at the table's old last row."""
     left, top, right, bottom = range_boundaries(one)
     if bottom != layout.bottom or top >= bottom or right > layout.columns:
         return one
@@ -45,7 +45,7 @@ def _longer(one: str, layout: Layout, last: int) -> str:
 
 
 def _moved(reference: str, layout: Layout) -> str:
-    """Return a range, moved down with the legend if it lies in the legend."""
+    """Move a range of cells down, as far as the legend moves, if it lies in the legend."""
     left, top, right, bottom = range_boundaries(reference)
     first, stop = layout.legend
     if not (first <= top and bottom < stop and right <= layout.columns):

@@ -75,7 +75,7 @@ class Content(NamedTuple):
 
 
 class SheetXml:
-    """A worksheet's XML.
+    """The XML of a worksheet, in which cells can be changed.
 
     Args:
         data: the file; an earlier check has made sure that it defines no XML entities.
@@ -100,11 +100,11 @@ class SheetXml:
             raise NotEditable("it has no cells")
 
     def cells(self) -> list[XmlCell]:
-        """Return the cells in the order of the file."""
+        """Return the cells of the worksheet, in the order of the file."""
         return [cell for line in self._lines.values() for cell in line.cells]
 
     def raw(self, start: int, end: int) -> str:
-        """Return a part of the XML as it is."""
+        """Return a part of the worksheet's XML as it is."""
         return self._data[start:end].decode()
 
     def number(self, text: str) -> Content:
@@ -117,12 +117,12 @@ class SheetXml:
         return Content(f"<{p}is><{p}t>{escape(text)}</{p}t></{p}is>", "inlineStr")
 
     def copy(self, cell: XmlCell) -> Content:
-        """Return the content of a cell, with its style."""
+        """Return the present content of a cell with its style, to put it into another cell."""
         inner = self.raw(cell.inner_start, cell.inner_end)
         return Content(inner, cell.attributes.get("t", ""), cell.attributes.get("s", ""))
 
     def edited(self, contents: Mapping[Place, Content]) -> bytes:
-        """Return the file with new contents of cells; missing rows and cells are added."""
+        """Return the worksheet's XML with new contents of cells; add missing rows and cells."""
         pieces: list[tuple[int, int, bytes]] = []
         rows: dict[int, dict[int, Content]] = {}
         for (row, column), content in contents.items():

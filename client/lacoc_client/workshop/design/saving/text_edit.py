@@ -8,7 +8,7 @@ from lacoc_shared.mistakes import FileRefused
 
 
 def edit_text(data: bytes, name: str, table: PostureTable) -> bytes:
-    """Return the bytes of a Loco-data text file in which a table replaces the postures.
+    """Return the bytes of a text file of postures after a table has replaced its postures.
 
     Lines of unchanged postures, and all lines below the postures, stay as they are. If the file
     has another number of legs than the table, or mistakes, all of it is written anew.

@@ -36,7 +36,7 @@ _LONG_FORMULAS = ("array", "dataTable")
 
 
 def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
-    """Return a workbook in which a table replaces the postures.
+    """Return the bytes of a workbook after a table has replaced its postures.
 
     Args:
         data: the .xlsx file as it is now.
@@ -77,7 +77,7 @@ def formulas_in(data: bytes, name: str) -> int:
 
 
 class _Edit:
-    """One change of a workbook.
+    """One change of a workbook: new postures in its table.
 
     Args:
         book: the workbook.
@@ -172,7 +172,9 @@ class _Edit:
         return made(text)._replace(style=style)
 
     def _unshared(self, contents: Mapping[Place, Content]) -> dict[Place, Content]:
-        """Return formulas for cells that share a formula with a changed cell; each gets its own.
+        """Give each cell that shares a formula with a changed cell a formula of its own.
+
+        Return the new contents of these cells by their places.
 
         Raises:
             NotEditable: if a changed cell is part of a formula over several cells.
@@ -211,7 +213,8 @@ class _Edit:
         The mirror sheet, which shows the table's cells by formulas, gets the new numbers as stored
         results, because programs that can't calculate read them.
 
-        Returns: Whether there are formulas that may depend on the table.
+        Returns:
+            Whether there are formulas that may depend on the table.
         """
         depend = self._dependent()
         for name, sheet in self._sheets.items():
@@ -230,7 +233,7 @@ class _Edit:
         return bool(depend)
 
     def _mirrors(self, cell: XmlCell) -> bool:
-        """Return whether a cell's stored result equals the table's cell at the same address."""
+        """Return whether a cell shows the same value as the table's cell at the same address."""
         there = self._layout.texts.get(cell.place, "")
         if number_of(there) is not None:
             return number_of(cell.value) == number_of(there)
@@ -268,7 +271,10 @@ def _translated(formula: str, origin: Place, place: Place) -> str:
 
 
 def _with_value(sheet: SheetXml, cell: XmlCell, value: str) -> Content:
-    """Return a cell's content: its formula and a stored result. "": without a stored result."""
+    """Return the content of a cell with its formula, and `value` as the formula's stored result.
+
+    "": no stored result.
+    """
     assert cell.formula is not None
     p, kind = sheet.prefix, ""
     inner = sheet.raw(cell.formula.start, cell.formula.end)

@@ -31,7 +31,7 @@ class Layout:
 
 
 def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
-    """Find the row of each posture, and a free row for each new one.
+    """Find the sheet's row of each posture, and a free row for each new posture.
 
     Raises:
         UserError: if the postures do not fit into the sheet.

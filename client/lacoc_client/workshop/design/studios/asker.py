@@ -62,11 +62,11 @@ class Asker:
         """Number of requests that wait for their answer."""
 
     def start(self) -> None:
-        """Start to look for a studio."""
+        """Start the thread that looks for a studio."""
         self._thread.start()
 
     def close(self) -> None:
-        """Close the connection."""
+        """Close the connection to the studio."""
         self._ending.set()
         self._thread.join()
 
@@ -101,7 +101,11 @@ class Asker:
             raise UserError(say("design.bad-answer", error=str(error))) from None
 
     async def progress(self, job: str, tell: Callable[[Progress], None]) -> "Listening":
-        """Call a function on another thread for each report on a search, until it is closed.
+        """Subscribe to the studio's reports on a search.
+
+        Args:
+            job: name of the search.
+            tell: called with each report, on another thread, until the subscription is closed.
 
         Raises:
             NotNow: if there is no studio.
@@ -110,7 +114,7 @@ class Asker:
         return Listening(session, keys.progress(job), tell)
 
     async def _found(self) -> tuple[Session, StudioKeys]:
-        """Return the session and the studio's keys.
+        """Return the Zenoh session, and the key expressions of the studio.
 
         Wait a moment if the studio is just starting.
         """
@@ -124,7 +128,7 @@ class Asker:
             await asyncio.sleep(_LAST_POLL_S)
 
     async def _answered(self, what: str, request: bytes, timeout_s: float) -> bytes:
-        """Send a request and wait for its answer.
+        """Send a request to the studio, and wait for its answer.
 
         A studio that has just started can't receive requests for a moment after it is found. So a
         request that nobody received is sent again.
@@ -144,7 +148,7 @@ class Asker:
                 raise refusal_of(refused.payload) from None
 
     def _look(self) -> None:
-        """Connect, and keep looking for studios, until `close`."""
+        """Connect to the network, and keep looking for studios, until `close`."""
         with ExitStack() as stack:
             while not self._ending.is_set():
                 began_s = time.monotonic()
@@ -168,7 +172,7 @@ class Asker:
 
 
 async def _wait(question: Question) -> bytes:
-    """Wait for an answer; raise the same errors as `Question.take`."""
+    """Wait for the answer to a request; raise the same errors as `Question.take`."""
     pause_s = _FIRST_POLL_S
     while (payload := question.take()) is None:
         await asyncio.sleep(pause_s)
@@ -191,7 +195,7 @@ class Listening:
         self._mailbox = session.mailbox(key, 1, self._arrived)
 
     def close(self) -> None:
-        """End the subscription."""
+        """End the subscription to the reports."""
         if self._mailbox is not None:
             self._mailbox.close()
 

@@ -1,4 +1,4 @@
-"""Sends a page's requests to a studio; it makes files of tables, and unique names for searches."""
+"""Sends a page's requests to a studio: with tables as files, and unique names of searches."""
 
 import asyncio
 import secrets
@@ -69,7 +69,7 @@ class StudioDesk:
         return msgspec.Raw((await asker.ask("robot", request, RobotReply, _ROBOT_S))[1])
 
     async def trial(self, asked: requests.TrialAsk) -> tuple[TrialReply, bytes]:
-        """Let the robot walk; a page's second trial waits until its first one ends.
+        """Let the robot walk; while a trial of this page runs, its next trial waits.
 
         Returns:
             The answer, and its bytes.
@@ -84,7 +84,7 @@ class StudioDesk:
             return await self._studios.free().ask("trial", request, TrialReply, _TRIAL_S)
 
     async def coach(self, asked: requests.CoachAsk) -> msgspec.Raw:
-        """Let a studio search for better numbers, and report to the page several times a second."""
+        """Let a studio search for better numbers of a gait, and report to the page."""
         request = CoachRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -98,7 +98,7 @@ class StudioDesk:
         return await self._search("coach", asked.job, request, CoachReply, asked.seconds)
 
     async def map(self, asked: requests.MapAsk) -> msgspec.Raw:
-        """Let a studio search for a map of gaits, and report to the page as in `coach`."""
+        """Let a studio search for gaits of many speeds and arousals; report to the page."""
         request = MapRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -110,10 +110,7 @@ class StudioDesk:
         return await self._search("map", asked.job, request, MapReply, asked.seconds)
 
     async def variants(self, asked: requests.VariantsAsk) -> msgspec.Raw:
-        """Let a studio search for six gaits that look different.
-
-        Report to the page as in `coach`.
-        """
+        """Let a studio search for six gaits that look different; report to the page."""
         request = VariantsRequest(
             protocol=PROTOCOL,
             job=self._job(asked.job),
@@ -134,7 +131,7 @@ class StudioDesk:
         reply: type[CoachReply | MapReply | VariantsReply],
         seconds: float,
     ) -> msgspec.Raw:
-        """Let a studio search, and report to the page how far the search is.
+        """Let a studio search, and tell the page how far the search is.
 
         Args:
             what: name of the request.

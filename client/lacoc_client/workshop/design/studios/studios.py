@@ -22,7 +22,7 @@ class Studios:
             asker.start()
 
     def close(self) -> None:
-        """Close all connections."""
+        """Close the connections to all studios."""
         for asker in self._askers:
             asker.close()
 

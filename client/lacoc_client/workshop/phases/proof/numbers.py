@@ -2,7 +2,7 @@
 
 A number is *typed* if the student typed it by hand into its cell, before the same number came there
 in another way. It is *made* if a tool or a paste put it there, and the student had typed the same
-number for a joint of this level before. It is *given* if it came from the lesson of one leg, or if
+number for such a joint (Root, 1st or 2nd) before. It is *given* if it came from the lesson, or if
 a tool or a paste copied it from there: it may be in the table, but is not counted. Any other
 number is *foreign*: it was pasted, or it came with a file, from the coach, or from the teacher.
 Numbers of the robot's start posture are none of these.
@@ -33,7 +33,7 @@ def is_apart(one_deg: float, other_deg: float) -> bool:
 
 @dataclass(frozen=True)
 class OwnTrial:
-    """A trial, and how many numbers of its rows are typed, made and foreign."""
+    """A trial, and how many numbers in the rows that it used are typed, made and foreign."""
 
     tried: Tried
     typed: int
@@ -46,7 +46,7 @@ class OwnTrial:
 
 
 def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
-    """Find for each trial where the numbers of its rows came from.
+    """Find for each trial where the numbers in the rows that it used came from.
 
     Args:
         evidence: all evidence of a student, in order.
@@ -98,7 +98,7 @@ class _Cells:
                     self._base.setdefault(place, before)
 
     def judge(self, tried: Tried) -> OwnTrial:
-        """Count how many numbers of a trial are typed, made and foreign."""
+        """Count how many numbers in the rows of a trial are typed, made and foreign."""
         counts = {"typed": 0, "made": 0, "foreign": 0}
         for number in tried.numbers:
             place = (number.key, number.posture, number.leg, number.level)
@@ -123,7 +123,7 @@ class _Cells:
 
 @dataclass(frozen=True)
 class LegNumbers:
-    """How much a student has typed for one leg."""
+    """How many joints and postures of one leg a student has changed by typing."""
 
     joints: int
     """How many of the leg's three joints were turned by at least `NUMBER_DEG`."""
@@ -133,7 +133,7 @@ class LegNumbers:
 
 
 def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
-    """Return for each leg how much a student has typed."""
+    """Return for each leg how many joints and postures of it a student has changed by typing."""
     joints: dict[int, set[int]] = {}
     postures: dict[int, list[tuple[float, ...]]] = {}
     for leg in _typed_legs(evidence):
@@ -146,7 +146,7 @@ def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
 
 
 def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
-    """Return, in order, those guesses of where a foot goes that count.
+    """Return, in order, a student's guesses of where a foot goes, without those that don't count.
 
     A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
     seen before where the foot goes if this joint turns in this direction.
@@ -172,7 +172,7 @@ def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
 
 
 def _moves(edit: Edited) -> set[_Move]:
-    """Return which joints an edit by hand turned, and in which direction."""
+    """Return which joints an edit has turned, and in which direction; none if it was not typed."""
     if edit.by != "hand":
         return set()
     return {
@@ -185,7 +185,7 @@ def _moves(edit: Edited) -> set[_Move]:
 
 
 def _typed_legs(evidence: Sequence[Evidence]) -> list[LegEdit]:
-    """Return the edits by hand, except those that filled new rows."""
+    """Return the edits of legs that the student typed, except those that filled new rows."""
     edits = (one for one in evidence if isinstance(one, Edited) and one.by == "hand")
     return [leg for edit in edits for leg in edit.legs if leg.before_deg]
 

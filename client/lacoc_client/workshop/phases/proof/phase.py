@@ -39,7 +39,9 @@ class WorkshopPhase:
     was done, and how many questions of the phase were answered wrong."""
 
     def look(self, evidence: Sequence[Evidence]) -> tuple[Outcome, PhaseQuestion | None]:
-        """Return how far a student is in this phase, and the question to answer now, if any.
+        """Return how far a student is in this phase, and the question that the student must answer.
+
+        The question is None if the student need not answer one now.
 
         Args:
             evidence: all evidence of the student, in order.
@@ -63,7 +65,7 @@ class WorkshopPhase:
         return Outcome(_ASKED_SHARE, (say("phases.answer"),)), question
 
     def may_change(self, known: PhaseQuestion | None, new: Sequence[Evidence]) -> bool:
-        """Return whether new evidence may change what `look` returns.
+        """Return whether new evidence may change how far the student is in this phase.
 
         Args:
             known: the question that `look` has returned; None: none.
@@ -93,7 +95,7 @@ class WorkshopPhase:
         return None
 
     def _done(self, evidence: Sequence[Evidence], start: int, again: bool) -> int:
-        """Return how many pieces of evidence were needed until the work was done.
+        """Return after how many pieces of all evidence the work of this phase was done.
 
         May be called only when the work is done.
         """

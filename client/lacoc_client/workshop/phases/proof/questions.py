@@ -1,4 +1,8 @@
-"""The question that a phase asks before it is done, made of the student's own table and trial."""
+"""Makes the question that a phase asks before it is done, from the student's own table and trial.
+
+Each function takes the evidence with which the work was done, and `turn`: how many questions of the
+phase the student has answered wrong. After a wrong answer the question is another one.
+"""
 
 import math
 from collections.abc import Sequence
@@ -83,7 +87,10 @@ def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where a foot goes if the last guessed change is undone, or made on the mirrored leg."""
+    """Ask where a foot goes if a change is undone, or made on the opposite leg of the robot.
+
+    It is the last change for which the student guessed where the foot goes.
+    """
     guess = foot_guesses(seen)[-1]
     joint, leg = _LEVELS[guess.level], _label(guess.of_legs, guess.leg)
     way = _WAYS.get(_main_way(guess), say("phases.way-still"))
@@ -233,7 +240,7 @@ def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def keys_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask with which tried key the robot turns to one side."""
+    """Ask which of the keys that the student has tried turns the robot to one side."""
     is_right = turn % 2 == 0
     sign = -1 if is_right else 1
     versions: dict[str, dict[str, float]] = {}
@@ -280,7 +287,7 @@ def _made(
 
 
 def _ways(name: str, ask: Phrase, right: Sequence[FootWay], because: Phrase) -> PhaseQuestion:
-    """Make a question about the direction of a foot; the choices stand in their usual order."""
+    """Make a question about the direction of a foot; its choices are always in the same order."""
     places = frozenset(place for place, way in enumerate(_WAYS) if way in right)
     return PhaseQuestion(name, ask, tuple(_WAYS.values()), places, because)
 

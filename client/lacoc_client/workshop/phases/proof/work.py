@@ -63,9 +63,9 @@ class LessonWork:
     kinds = (TookStep,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Count the steps that are done.
+        """Count the steps of the lesson that the student has done.
 
-        After a wrong answer to the question one new answer is enough.
+        After a wrong answer to the phase's question one new answer in the lesson is enough.
         """
         if again:
             new = sum(isinstance(one, TookStep) and one.question >= 0 for one in evidence[start:])
@@ -101,9 +101,9 @@ class LegWork:
     kinds: ClassVar = (Edited, Guessed)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Count joints, postures and guesses.
+        """Count the joints turned, the postures typed and the right guesses in a row.
 
-        After a wrong answer one new right guess is enough.
+        After a wrong answer to the phase's question one new right guess is enough.
         """
         guesses = foot_guesses(evidence, start)
         if again:
@@ -143,7 +143,10 @@ class TrialWork:
     kinds: ClassVar = (Tried,)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Return the outcome of the best trial; after a wrong answer one new number is enough."""
+        """Return how much of the work the best trial has done.
+
+        After a wrong answer to the phase's question one new number is enough.
+        """
         trials = own_trials(evidence, start)
         outcomes = [self._judged(one, again) for one in reversed(trials)]
         lacks = (_one_more(1),) if again else (self._more_numbers(self.numbers), _TRY)
@@ -168,7 +171,7 @@ class TrialWork:
 
 @dataclass(frozen=True)
 class VersionWork:
-    """Work: show something with one version of the table that has numbers of the student's own."""
+    """Work: meet rules with one version of the table that has numbers of the student's own."""
 
     shown: Predicate
     numbers: int
@@ -177,7 +180,10 @@ class VersionWork:
     kinds: ClassVar = (Tried, CheckedGait, Compared, Named, Voted)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
-        """Return the outcome of the best version; after a wrong answer a new trial is enough."""
+        """Return how much of the work is done with the best version of the table.
+
+        After a wrong answer to the phase's question a new trial is enough.
+        """
         trials = own_trials(evidence, start)
         if again:
             own = max((one.typed for one in trials), default=0)
