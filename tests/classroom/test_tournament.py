@@ -110,7 +110,7 @@ def test_a_tournament_that_is_ended_early(tmp_path: Path) -> None:
         assert (room.state.state, room.state.trouble) == ("stopped", None)
         assert len(room.state.matches) >= 1
         assert children() == []
-        assert not [*room.tournament.recordings.glob("*.live.mcap")]
+        assert not [*room.tournament.recordings.glob("*.part")]
         await room.tournament.stop()
 
     run_async(play)

@@ -117,7 +117,7 @@ def many(tmp_path: Path) -> Iterator["subprocess.Popen[str]"]:
     with process:
         assert process.stdout is not None
         assert json.loads(process.stdout.readline())["kind"] == "begin"
-        while len([*(tmp_path / "records").glob("*.live.mcap")]) < 2:
+        while len([*(tmp_path / "records").glob("*.part")]) < 2:
             assert process.poll() is None
             time.sleep(0.02)
         yield process
