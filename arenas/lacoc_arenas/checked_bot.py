@@ -16,6 +16,8 @@ from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
 from lacoc_shared.words import Phrase, say
 
+_ANY = (Exception, SystemExit, TimeUp)
+"""Whatever a person's code may raise."""
 _OURS = (__file__, time_limit.__file__)
 _LONGEST_ERROR = 200
 _A_BRAIN = say("expected.brain")
@@ -35,12 +37,18 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
 
     def make(sheet: Sheet, seat: int) -> Brain:
         timer = Timer(name)
-        brain = _call(timer.begin, name, bot, sheet, seat)
+        try:
+            brain = timer.begin(bot, sheet, seat)
+        except _ANY as error:
+            raise _failed(name, bot, error) from error
         if not callable(brain):
             raise _gave_back(name, bot, brain, _A_BRAIN)
 
         def see(frame: Frame) -> Key | None:
-            key: Key | None = _call(timer.frame, name, brain, frame)
+            try:
+                key: Key | None = timer.frame(brain, frame)
+            except _ANY as error:
+                raise _failed(name, brain, error) from error
             if key is not None and not _is_key(key):
                 raise _gave_back(name, brain, key, _A_KEY)
             return key
@@ -62,7 +70,7 @@ def loaded(name: str, load: Callable[[], Any]) -> Any:
     """
     try:
         return Timer(name).begin(load)
-    except (Exception, SystemExit, TimeUp) as error:  # whatever a person's code may raise
+    except _ANY as error:
         raise broken(name, error, name) from error
 
 
@@ -88,22 +96,15 @@ def broken(name: str, error: BaseException, file: str | None) -> UserError:
     return UserError(say("bot.ended", bot=name, place=place, error=what))
 
 
-def _call(
-    timed: Callable[..., Any], name: str, function: Callable[..., Any], *arguments: object
-) -> Any:
-    try:
-        return timed(function, *arguments)
-    except (Exception, SystemExit, TimeUp) as error:  # whatever a person's code may raise
-        called = error.__traceback__
-        while called is not None and called.tb_frame.f_code.co_filename in _OURS:
-            called = called.tb_next
-        if called is None and isinstance(error, TypeError):  # it does not take these arguments
-            place = _place(function)
-            raise UserError(
-                say("bot.can-not-call", bot=name, place=place, error=str(error))
-            ) from error
-        file = called and called.tb_frame.f_code.co_filename
-        raise broken(name, error, file) from error
+def _failed(name: str, function: Callable[..., Any], error: BaseException) -> UserError:
+    """Make the error for an exception of a bot's function, with the line of the bot's own code."""
+    called = error.__traceback__
+    while called is not None and called.tb_frame.f_code.co_filename in _OURS:
+        called = called.tb_next
+    if called is None and isinstance(error, TypeError):  # it does not take these arguments
+        place = _place(function)
+        return UserError(say("bot.can-not-call", bot=name, place=place, error=str(error)))
+    return broken(name, error, called and called.tb_frame.f_code.co_filename)
 
 
 def _is_key(found: object) -> bool:
