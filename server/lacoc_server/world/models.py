@@ -62,9 +62,9 @@ def compile_models(spec: mujoco.MjSpec, robots: int = 0) -> Models:
     # finds, so that contacts have the same order with it and without it.
     stepped.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
     clear = apart = None
-    if can_delete and robots:
+    if can_delete and robots and len(_moving_trees(stepped)) == robots:
         clear = _without_obstacles(stepped)
-        apart = _without_search(spec, stepped, robots)
+        apart = _without_search(spec, stepped)
     return Models(whole, stepped, touching, clear, apart)
 
 
@@ -85,6 +85,12 @@ def _solids(model: Any) -> tuple[list[int], list[int]]:
     return fixed.tolist(), moving.tolist()
 
 
+def _moving_trees(model: Any) -> set[int]:
+    """Return the ids of the bodies from which everything hangs that moves and can collide."""
+    _, moving = _solids(model)
+    return set(model.body_rootid[model.geom_bodyid[moving]].tolist())
+
+
 def _without_obstacles(stepped: Any) -> Any:
     """Return a model whose obstacles meet nothing; None if there are no obstacles."""
     geoms = obstacles(stepped)
@@ -95,7 +101,7 @@ def _without_obstacles(stepped: Any) -> Any:
     return clear
 
 
-def _without_search(spec: mujoco.MjSpec, stepped: Any, robots: int) -> Any:
+def _without_search(spec: mujoco.MjSpec, stepped: Any) -> Any:
     """Compile the model of robots that meet fixed geoms only, as a list of pairs of geoms.
 
     The contacts of a pair are the same as those that MuJoCo finds by its search, because the
@@ -103,13 +109,12 @@ def _without_search(spec: mujoco.MjSpec, stepped: Any, robots: int) -> Any:
 
     Args:
         spec: the description of `stepped`. It is changed.
-        stepped: the compiled model.
-        robots: number of robots.
+        stepped: the compiled model, in which only robots move.
 
     Returns:
-        The model. None if it could have other contacts: something else than robots moves, parts of
-        one robot meet, or a fixed geom has a say in a contact. None also if there are so many pairs
-        that the search takes less time.
+        The model. None if it could have other contacts: parts of one robot meet, or a fixed geom
+        has a say in a contact. None also if there are so many pairs that the search takes less
+        time.
     """
     fixed, moving = _solids(stepped)
     con, aff = stepped.geom_contype, stepped.geom_conaffinity
@@ -117,7 +122,6 @@ def _without_search(spec: mujoco.MjSpec, stepped: Any, robots: int) -> Any:
     meets = (con[moving][:, None] & aff[moving]) != 0
     if (
         len(fixed) * len(moving) > _MOST_PAIRS
-        or len(set(trees.tolist())) != robots
         or (meets & (trees[:, None] == trees)).any()
         or stepped.geom_margin.any()
         or stepped.geom_priority[moving].min() <= stepped.geom_priority[fixed].max(initial=-1)
