@@ -48,26 +48,24 @@ PLACES = st.builds(
 )
 
 
-@settings(max_examples=1000)
+@settings(max_examples=300)
 @given(
     PLACES,
     st.floats(0.0, 0.8),
     st.floats(-math.pi, math.pi),
-    st.sampled_from((0.0, 0.3, math.pi)),
-    st.integers(0, 2**32 - 1),
+    st.lists(st.floats(-math.pi, math.pi), min_size=3, max_size=3),
 )
 def test_what_a_model_leaves_out_is_not_there(
-    left: Place, apart_m: float, towards_rad: float, most_rad: float, seed: int
+    left: Place, apart_m: float, towards_rad: float, angles: list[float]
 ) -> None:
-    """No contact is there that the chosen model lacks, also with straight and with twisted legs."""
+    """No contact is there that the chosen model lacks, with all legs in one posture, any one."""
     x_m, y_m = math.cos(towards_rad) * apart_m, math.sin(towards_rad) * apart_m
     right = Place(left.x_m + x_m, left.y_m + y_m, towards_rad)
     data = mujoco.MjData(MODELS.stepped)
-    chance = np.random.default_rng(seed)
     for robot, place in zip(ROBOTS, (left, right), strict=True):
         robot.put(data, place)
-        joints = len(robot.joint_qpos)
-        data.qpos[robot.joint_qpos] = chance.uniform(-most_rad, most_rad, joints)
+        data.qpos[robot.root_qpos + 2] = 0.1  # legs at one height
+        data.qpos[robot.joint_qpos] = np.repeat(angles, len(robot.joint_qpos) // 3)
     chosen = kind_of(MODELS, Nearness(MODELS, data.qpos, ROBOTS).model())
     mujoco.mj_forward(MODELS.stepped, data)
     model = MODELS.stepped
