@@ -6,7 +6,7 @@ from collections.abc import Callable
 import mujoco
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from stage import entry
 
@@ -48,7 +48,6 @@ PLACES = st.builds(
 )
 
 
-@settings(max_examples=300)
 @given(
     PLACES,
     st.floats(0.0, 0.8),
