@@ -40,8 +40,8 @@ bots start this many ticks later."""
 _MOST_DEATHS = 3
 """How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3
-"""If a game was void this many times and physics stops again, it counts as a draw without
-points."""
+"""If a game was void this many times because MuJoCo could not go on, and that happens once more,
+the game counts as a draw without points."""
 
 
 class GameEngine(Protocol):

@@ -257,8 +257,13 @@ def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) 
 
 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
-    """Return whether the office may end, `passed_s` after its courts need not stay open any more.
+    """Return whether the office may end after the contest.
 
     It may if all records of courts on other machines are here, or if it has waited for `_COPY_S`.
+
+    Args:
+        passed_s: for how long the courts have not had to stay open any more [s]; negative: they
+            still must.
+        away: the courts on other machines.
     """
     return passed_s > 0 and (passed_s > _COPY_S or all(one.is_copied for one in away))

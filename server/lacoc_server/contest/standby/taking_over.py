@@ -91,7 +91,7 @@ def _check_gone(other: Other) -> None:
 
 @contextmanager
 def _alone(where: ContestFolder) -> Iterator[None]:
-    """End the program that copies into this folder; until the block ends, no other one may use it.
+    """End the program that copies into this folder; until the block ends, let no other one begin.
 
     Raises:
         UserError: if another program holds the folder.

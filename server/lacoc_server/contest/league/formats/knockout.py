@@ -59,7 +59,7 @@ class Knockout(DrawnAtOnce):
 
 
 def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
-    """Yield the decided matches that settle the winner's place, too, such as the final."""
+    """Yield the decided matches that settle the winner's final place, such as the final itself."""
     for match in matches:
         if match.pairing.winner_place and match.state == "decided":
             yield match
