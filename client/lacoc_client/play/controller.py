@@ -208,7 +208,7 @@ class Controller:
         """Take the seat; if an older controller with the same token has it, it loses the seat.
 
         Returns:
-            Notes for the contestant.
+            The court's notes for the contestant, such as remarks on the files.
 
         Raises:
             FileRefused: if the files have mistakes.

@@ -36,7 +36,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises:
             FileRefused: with every mistake of the table.
-            UserError: if a key of a locomotion table is missing.
+            UserError: if a locomotion table has no row of a key below its highest key.
         """
         gait = sent_gait(self.table)
         if self.table.kind == "locomotion":

@@ -132,7 +132,7 @@ def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
 
 
 def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say which stages would end, and which draw would follow, or would wait for the organiser."""
+    """Say which stages a decision would end, and which draw would follow or wait for a person."""
     ended = {view.name for view in was.stages if view.over}
     for view in then.stages:
         if view.over and view.name not in ended:

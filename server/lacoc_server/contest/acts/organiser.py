@@ -324,8 +324,8 @@ def prepare(
         headless: whether there are no courts; a stage of open matches needs them.
 
     Raises:
-        UserError: if the file has no stage, a stage that is drawn has changed there, or there are
-            too few teams.
+        UserError: if the file has no stage, if it has changed a stage that is drawn already, or if
+            there are too few teams.
     """
     if not where.plans and (headless or where.open_stage is None):
         raise UserError(say("contest.no-stages", file=str(where.file)))

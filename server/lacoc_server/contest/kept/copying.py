@@ -28,7 +28,7 @@ class Taken(Enum):
 
 
 def have(folder: Path, match_id: str) -> dict[str, int]:
-    """Return the files of a match's record that are here, each with its length in bytes.
+    """Return the files of a match's record that this machine has, each with its length in bytes.
 
     Args:
         folder: folder of the records.

@@ -285,7 +285,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next.
+        """Return the state of the environment as bytes, without first postures still to be drawn.
 
         Raises:
             UserError: if no episode has begun.
