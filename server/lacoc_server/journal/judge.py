@@ -60,7 +60,7 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Hash of physics' state in the newest recorded frame; before the first, in `self.world`."""
+        """Hash of physics' state in the newest recorded frame; before the first: in `world`."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
