@@ -313,7 +313,7 @@ class Controller:
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
-            upon: the frame that the player saw; None: the newest frame that arrived here.
+            upon: the frame that the player saw; None: the newest frame that this controller got.
 
         Returns:
             The command's sequence number.

@@ -22,7 +22,7 @@ class _RobotEntry(msgspec.Struct, frozen=True):
 
 
 class Draft(msgspec.Struct, frozen=True, kw_only=True):
-    """A table without a bad cell, with its keys and its robot."""
+    """A table with an angle in each cell, with its keys and its robot."""
 
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None

@@ -86,7 +86,7 @@ class Teller:
     ) -> None:
         """Find out where each team plays or waits, and send this to the courts.
 
-        A court gets it if it has changed since the court was last told, or after `_AGAIN_MS`.
+        A court is told again if this has changed since the last time, or after `_AGAIN_MS`.
 
         Args:
             contest: the contest.

@@ -116,7 +116,7 @@ def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
     """Rename the records of unfinished matches whose calls are not among the facts.
 
     The other machine called these matches after its facts were last copied. No court may go on with
-    them, because the office here would not take their results.
+    them, because this machine's office would not take their results.
 
     Args:
         records: folder of the records.

@@ -186,7 +186,7 @@ def push_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask between which rows of a key its seam is, or which row is half a cycle after its first row.
+    """Ask between which rows of a key its seam is, or which row is half a cycle after the first.
 
     The seam of a key is the step from its last row to its first.
     """

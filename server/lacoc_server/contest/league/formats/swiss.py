@@ -212,7 +212,7 @@ def _colours(player: SwissTeam) -> list[str]:
 
 
 def _legal(pairs: Iterable[tuple[SwissTeam, ...]], players: Sequence[SwissTeam]) -> bool:
-    """Return whether everybody is paired once, and no rule is broken."""
+    """Return whether everybody is paired once, and no pair has one of the faults of `faults`."""
     found = list(pairs)
     everybody = sorted(player.number for pair in found for player in pair)
     byes = sum(len(pair) == 1 for pair in found)
