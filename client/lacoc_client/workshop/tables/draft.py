@@ -102,7 +102,7 @@ def _sequences(
 ) -> tuple[tuple[int, ...], ...] | None:
     """Return the digits of each key of level B; None if the table itself has the sequences.
 
-    A key that uses a posture that is missing gets the first posture, because each key needs one.
+    A key without postures, or with one that the table lacks, gets only the table's first posture.
     """
     keys = entries.get("keys")
     if table.kind == "locomotion" or not isinstance(keys, str):

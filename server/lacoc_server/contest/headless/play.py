@@ -1,7 +1,7 @@
 """A contest without a network: bots play all its games as fast as the machine can.
 
 A game is computed once. Its record is named by a hash of all that decides the game. So if the
-contest is played again, the games whose records are there need not be played. If an entry has
+contest is played again, games whose records exist need not be played. If an entry has
 changed, only games that depend on it are played again.
 """
 

@@ -1,4 +1,4 @@
-"""Ranks teams by the results of matches; a list of codes breaks ties."""
+"""Ranks teams by the results of matches, and equal teams by a list of tie-break codes."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
@@ -194,7 +194,7 @@ def standings(
 
 
 def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -> str:
-    """Return the first code with different values for two teams; "": no code tells them apart."""
+    """Return the first code whose values for two teams differ; "": no code tells them apart."""
     values = zip(codes, above, below, strict=False)
     return next((code for code, one, other in values if one != other), "")
 
