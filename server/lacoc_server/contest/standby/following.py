@@ -106,8 +106,8 @@ class Follower:
         Raises:
             NotThere: if the office does not answer. What was copied before stays; call this again.
             CopyingEnded: if this machine takes over as the office.
-            UserError: if the office has a wrong token or other facts than those copied so far, or
-                something can't be read or written.
+            UserError: if the office has another token than this machine, or other facts than those
+                copied so far, or if something can't be read or written.
         """
         for _ in range(_TRIES):
             with suppress(_Changed):

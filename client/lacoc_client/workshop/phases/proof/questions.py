@@ -125,7 +125,7 @@ def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask about the student's last trial: what its support margin means, or which feet carried."""
+    """Ask about the last trial: what its support margin means, or which feet carried the robot."""
     facts = _last_trial(seen).facts
     seed = len(seen)
     if turn % 2 == 0 and facts.margin_mm is not None:

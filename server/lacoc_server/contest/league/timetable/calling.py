@@ -18,7 +18,7 @@ OPEN_CALL = "open."
 
 
 def is_open_call(call: str) -> bool:
-    """Return whether the id `call` is of an open match; a contest game's is its fact's id."""
+    """Return whether the id of a call is of an open match; other calls have the id of a fact."""
     return call.startswith(OPEN_CALL)
 
 
