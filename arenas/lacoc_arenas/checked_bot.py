@@ -1,6 +1,6 @@
 """Check what a bot returns, and report its mistakes with the line of its own code.
 
-Most bots are files that somebody is still writing. All checks are here, so that a mistake
+Most bots are files that somebody is still writing. This module has all checks, so that a mistake
 reads the same in a headless match and at a court.
 """
 

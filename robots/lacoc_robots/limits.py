@@ -40,7 +40,8 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     hold_s: float = 5.0
     """Longest time that a drive may hold a posture."""
     drop_m: float = 0.05
-    """Largest height above the floor, at the start, of the robot's lowest part."""
+    """Largest height above the floor of the robot's lowest part, when the robot is put at a start
+    place in its start posture."""
     kp_max: float = 200.0
     """Largest stiffness of a servo [N m/rad]: for a stiffer servo the physics step is too long."""
     kv_max: float = 5.0

@@ -14,7 +14,7 @@ speed of a common hobby servo, 60 degrees in 0.17 s."""
 
 
 class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
-    """A robot: a box with legs, its servos, and its start."""
+    """A robot: a box with legs, its servos, and the posture and height in which it starts."""
 
     name: str
     size_m: tuple[float, float, float]
@@ -23,7 +23,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     legs: tuple[LegSpec, ...]
     """The legs, clockwise from the right front, seen from above."""
     start_height_m: float
-    """Height of the body's underside above the floor at the start."""
+    """Height of the body's underside above the floor when the robot is put at a start place."""
     start_posture: Posture
     """(joints,) angles [rad], by joint id."""
     ang_min_rad_s: float
@@ -89,12 +89,12 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def start_z_m(self) -> float:
-        """Height of the body's origin above the floor when a match starts."""
+        """Height of the body's origin above the floor when the robot is put at a start place."""
         return self.start_height_m + self.size_m[2] / 2
 
     @property
     def radius_m(self) -> float:
-        """Largest horizontal distance of any part from the body's origin, at the start."""
+        """Largest horizontal distance of any part from the body's origin, in the start posture."""
         corner = math.hypot(self.size_m[0], self.size_m[1]) / 2
         return max(
             corner,

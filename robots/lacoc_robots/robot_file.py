@@ -294,7 +294,10 @@ def too_large(
 
 
 def _check_size(root: Entries, start: Entries, robot: RobotSpec, limits: Limits) -> None:
-    """Check the robot's size with every angle 0 and at the start, and its height at the start."""
+    """Check the robot's size with every angle 0 and in the start posture, and its start height.
+
+    At the start height, the lowest part must be on the floor or at most `drop_m` above it.
+    """
     zero = (0.0,) * robot.joints
     for posture, named in (
         (zero, say("posture.zero")),

@@ -38,7 +38,7 @@ def try_standing(
 
 
 def stand(robot: RobotSpec, posture: Posture) -> Stood:
-    """Put a robot on an empty floor as a match does, let it take a posture, and measure it there.
+    """Put a robot on an empty floor, let it take a posture, and measure how it moves and tilts.
 
     Args:
         robot: the robot.

@@ -146,7 +146,7 @@ class FlagStrike:
         inside: tuple[int, int],
         struck: AbstractSet[Claim],
     ) -> Iterator[tuple[int, int]]:
-        """Yield the corner and the seat of each robot that takes a corner, as it just came in."""
+        """Yield corner and seat for each robot that takes a corner by entering it in this tick."""
         came = [
             now if now != self._inside(was, robot) else NO_CORNER
             for now, was, robot in zip(inside, state.inside, observation, strict=True)

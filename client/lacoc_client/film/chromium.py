@@ -51,7 +51,7 @@ def find(own: str | None = None) -> str:
         own: path at which Playwright would have installed a Chromium.
 
     Raises:
-        UserError: if there is none; it says how to install one.
+        UserError: if there is none; the message says how to install one.
     """
     named = os.environ.get(VARIABLE)
     if named:

@@ -208,7 +208,7 @@ class Controller:
         """Take the seat; if an older controller with the same token has it, it loses the seat.
 
         Returns:
-            Notes for the contestant.
+            The court's notes for the contestant, such as remarks on the files.
 
         Raises:
             FileRefused: if the files have mistakes.
@@ -313,7 +313,7 @@ class Controller:
         Args:
             level: a `Level`.
             key: a digit, or `RESTART_KEY`.
-            upon: the frame that the player saw; None: the newest frame that arrived here.
+            upon: the frame that the player saw; None: the newest frame that this controller got.
 
         Returns:
             The command's sequence number.

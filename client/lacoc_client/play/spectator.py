@@ -185,7 +185,10 @@ class Spectator:
             self._lacking_sheet.ask()
 
     def _has_sheet_of(self, frame: Frame) -> bool:
-        """Return whether the newest sheet here belongs to a frame; if not for long, fetch it."""
+        """Return whether the newest sheet that came belongs to a frame.
+
+        If none that fits has come for `_SHEET_S`, request it from the court.
+        """
         self._view.see_frame(frame.scene)
         if self._view.fits:
             self._other_since_s = None

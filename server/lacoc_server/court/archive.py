@@ -43,7 +43,7 @@ class RecordArchive:
     def take(self, match_id: str, writer: Recorder | None) -> None:
         """Write the end of a match's record now; then close it and make one file of its segments.
 
-        The second part is done on another thread.
+        The end is written on the caller's thread, all else on another one.
 
         Do nothing if the match has no record.
         """

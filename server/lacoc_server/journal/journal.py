@@ -127,7 +127,7 @@ class Journal:
             self.writer.leave()
 
     def _new(self, frame: Frame) -> bool:
-        """Return whether phase, seats, markers, poses or clock differ from the last frame's."""
+        """Return whether phase, seats, markers, poses or clock differ from the frame before."""
         content = (frame.clock_ticks, frame.poses, frame.phase, frame.seats, frame.markers)
         new, self._last = content != self._last, content
         return new

@@ -60,7 +60,7 @@ class RecordedPhysics:
 
     @property
     def digest(self) -> bytes:
-        """Hash of the physics' state in the newest recorded frame; if there is none, `world`'s."""
+        """Hash of physics' state in the newest recorded frame; before the first: in `world`."""
         frame = self._record.frame
         return frame.digest if frame else self.world.digest
 
@@ -78,7 +78,7 @@ class RecordedPhysics:
         return self._record.snapshot or b""
 
     def poses(self) -> bytes:
-        """Return the poses in the newest recorded frame; if it has none, the poses of `world`."""
+        """Return the poses in the newest recorded frame; if it has none, those of `self.world`."""
         frame = self._record.frame
         return frame.poses if frame and frame.poses else self.world.poses()
 

@@ -89,7 +89,7 @@ class Step:
 
 @dataclass
 class Section:
-    """The beats from a snapshot, or from where robots are built, to the next one or to the end."""
+    """Beats from a snapshot, or from the building of robots, to the next one or the last beat."""
 
     build: Build
     start: bytes | None

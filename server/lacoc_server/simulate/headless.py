@@ -121,7 +121,7 @@ def _require_gait(arena: arenas.Arena, files: _Files, folder: Path) -> None:
     """Check that there is a gait file for an open level.
 
     Raises:
-        UserError: if there is none; it names the folder that was searched.
+        UserError: if there is none; the message names the folder that was searched.
     """
     levels = arena.match.open_levels
     if not any(files[1 + level] for level in levels):
@@ -176,7 +176,7 @@ def _play(match: Match, journal: Journal, players: Sequence[Player]) -> Iterator
 def to_play(
     joins: Sequence[JoinSeat], pass_beat: Callable[[Sequence[Input]], Beat]
 ) -> Iterator[Beat]:
-    """Lead a new match to its first beat of PLAYING: teams sit down, robots settle, it is started.
+    """Lead a new match to its first beat of PLAYING: teams join, robots settle, the match starts.
 
     Args:
         joins: a join for each seat.
@@ -194,7 +194,7 @@ def to_play(
 def _follow(
     script: Generator[Inputs, Frame, object], pass_beat: Callable[[Sequence[Input]], Beat]
 ) -> Iterator[Beat]:
-    """Let the beats of a script pass, and yield each; raise `FileRefused` as `to_play`."""
+    """Let beats pass with the inputs that `script` yields; yield each beat; errors as `to_play`."""
     inputs = next(script)
     while True:
         beat = pass_beat(inputs)

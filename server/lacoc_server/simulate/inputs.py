@@ -72,7 +72,7 @@ def whole_match(
 
 
 def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
-    """Yield the inputs of each beat until play begins: teams join, are ready, the match is started.
+    """Yield the inputs of each beat until play begins: teams join, are ready, the match starts.
 
     Args:
         joins: for each seat, the request of its team to join, with its files.

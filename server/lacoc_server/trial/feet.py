@@ -50,7 +50,7 @@ def phases(down: Bools, first: int, cycles: Sequence[tuple[int, int]]) -> list[f
 
     Returns:
         For each foot the mean over all cycles, on a circle: the mean of 0.98 and 0.02 is 0. None
-        for a foot that never comes down in them.
+        for a foot that never comes down in these cycles.
     """
     found: list[float | None] = []
     for leg in range(down.shape[1]):

@@ -114,7 +114,7 @@ class SheetMirror:
 
         Args:
             name: path of the file.
-            tag: the ETag of the copy that is here; the pages then send only a newer file.
+            tag: the ETag of this machine's copy; the pages then send only a newer file.
         """
         asked = urllib.request.Request(f"{self._pages}/{name}", headers={"If-None-Match": tag})
         found = urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context)

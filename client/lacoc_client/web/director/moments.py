@@ -40,7 +40,7 @@ class Track:
         """Sign of the last difference in points that was not 0."""
 
     def see(self, now_s: float, now: CourtNow) -> Iterator[LiveMoment]:
-        """Compare how the court stands with the last call, and yield the moments in between.
+        """Compare how the court stands now with the look before; yield the moments in between.
 
         Args:
             now_s: the time of the look [s].

@@ -171,11 +171,11 @@ class SeatThread:
 
 
 def _join(controller: Controller, wrong: FileRefused | None) -> tuple[Phrase, ...]:
-    """Join the seat, and return the court's notes.
+    """Join the seat, and return the court's notes for the contestant.
 
     Args:
         controller: the seat's controller.
-        wrong: mistakes that were found in the files before; None: there were none.
+        wrong: mistakes that this gateway found in the files; None: it found none.
 
     Raises:
         FileRefused: if the court needs the files now and they have mistakes.

@@ -258,7 +258,7 @@ def page_routes(
     async def top_file(request: Request) -> Response:
         """Serve a file of the built pages that lies beside index.html.
 
-        The icon can be fetched by its old name too.
+        The icon can be fetched as favicon.ico too, the name that browsers try by themselves.
         """
         name = request.path_params["name"]
         file = await asyncio.to_thread(files.find, _OLD_NAMES.get(name, name))

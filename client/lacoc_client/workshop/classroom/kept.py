@@ -60,7 +60,7 @@ def export(path: Path) -> dict[str, bytes]:
     """Export the evidence and tables of a class; return the files by name.
 
     Raises:
-        UserError: if there is no such class, it is open, or its file is damaged.
+        UserError: if there is no such file, another program has it open, or it is damaged.
     """
     if not path.exists():
         raise UserError(say("class.none", file=text_of(path)))

@@ -86,7 +86,7 @@ def sent_gait(table: FileTable) -> SentFile:
 
     Raises:
         FileRefused: with every mistake of the table.
-        UserError: if a key of a locomotion table is missing.
+        UserError: if a locomotion table has no row of a key below its highest key.
     """
     gait = gait_of(table, table.file_name)
     return SentFile(table.file_name, write_gait(gait, leg_labels(table.legs)))

@@ -65,7 +65,7 @@ def gait_of(table: FileTable, name: str) -> PostureTable | LocomotionTable:
 
     Raises:
         FileRefused: with every mistake; its row and column are counted as in a file.
-        UserError: if a key of a locomotion table is missing.
+        UserError: if a locomotion table has no row of a key below its highest key.
     """
     cells = _posture_cells(table) if table.kind == "postures" else _locomotion_cells(table)
     rows = [Row(number, row) for number, row in enumerate(cells, start=1)]

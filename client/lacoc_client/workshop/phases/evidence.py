@@ -166,7 +166,10 @@ class Named(_EvidenceKind, frozen=True, kw_only=True, tag="named"):
 
 
 class Voted(_EvidenceKind, frozen=True, kw_only=True, tag="voted"):
-    """The student voted whether A or B fits a word better. The choice is not in the evidence."""
+    """The student voted whether A (the sample) or B (the own gait) fits a word better.
+
+    The choice is not in the evidence.
+    """
 
     poll: _Name
     """Name of the poll: the word."""

@@ -1,7 +1,7 @@
 """The document of a shared table: it merges updates of pages, and checks that it stays a table.
 
 Pages merge in the same way, with Yjs. An update after which the document would not be a table is
-undone before another page sees it. An update whose predecessors are missing here is refused.
+undone before another page sees it. An update whose earlier edits did not come is refused.
 """
 
 from collections.abc import Callable, Mapping

@@ -22,7 +22,7 @@ class _RobotEntry(msgspec.Struct, frozen=True):
 
 
 class Draft(msgspec.Struct, frozen=True, kw_only=True):
-    """A table without a bad cell, with its keys and its robot."""
+    """A table with an angle in each cell, with its keys and its robot."""
 
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None
@@ -36,7 +36,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
         Raises:
             FileRefused: with every mistake of the table.
-            UserError: if a key of a locomotion table is missing.
+            UserError: if a locomotion table has no row of a key below its highest key.
         """
         gait = sent_gait(self.table)
         if self.table.kind == "locomotion":
@@ -102,7 +102,7 @@ def _sequences(
 ) -> tuple[tuple[int, ...], ...] | None:
     """Return the digits of each key of level B; None if the table itself has the sequences.
 
-    A key that uses a posture that is missing gets the first posture, because each key needs one.
+    A key without postures, or with one that the table lacks, gets only the table's first posture.
     """
     keys = entries.get("keys")
     if table.kind == "locomotion" or not isinstance(keys, str):

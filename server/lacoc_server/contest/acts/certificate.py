@@ -56,7 +56,8 @@ def make_certificate(file: Path, hosts: Sequence[str]) -> tuple[list[str], date]
         All names and IP addresses in the certificate, and its last day.
 
     Raises:
-        UserError: if a file can't be used or written, or if the contest has another certificate.
+        UserError: if a file can't be used or written, or if the contest file names a certificate
+            that was not made here.
     """
     hosts = [address.host(address.endpoint(host)) for host in hosts]
     data, contest = _with_entries(file)
@@ -102,7 +103,8 @@ def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
         The file as bytes, and the same as a `ContestFile`.
 
     Raises:
-        UserError: if the file can't be read, has a mistake, or names another certificate.
+        UserError: if the file can't be read, has a mistake, or names a certificate that was not
+            made here.
     """
     try:
         data = file.read_bytes()
@@ -134,7 +136,7 @@ def _authority(folder: Path, now: datetime) -> tuple[x509.Certificate, ec.Ellipt
     """Load the certificate authority of a folder; if the folder has none, make one.
 
     Raises:
-        UserError: if the authority that is there can't issue certificates.
+        UserError: if the folder has an authority, but it can't issue certificates.
     """
     file, key_file = folder / _AUTHORITY, folder / _AUTHORITY_KEY
     if not file.exists() and not key_file.exists():
@@ -218,10 +220,10 @@ def _write(path: Path, data: bytes) -> None:
 def doubts(
     public: PublicAddress, entries_close: datetime | None, now: datetime
 ) -> Iterator[Phrase]:
-    """Yield warnings about a certificate: it ends soon, or it is for other host names.
+    """Yield warnings about a contest's certificate: it ends soon, or lacks the host of the pages.
 
     Args:
-        public: address of the pages and their certificate, which must be there.
+        public: address of the pages, with the path of their certificate (not None).
         entries_close: when entries close, if the contest file says so. The contest is later, so the
             certificate must outlast this time.
         now: time with a time zone.

@@ -33,8 +33,9 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
 Kind = Literal["replay", "result", "void", "no-show"]
-"""replay: the game is played again. result: it counts with another result. void: the match counts
-for nobody. no-show: a team did not come, and its opponent wins if the match is not decided yet."""
+"""replay: the game is played again. result: the game counts with a result that the organiser gives.
+void: the match counts for nobody. no-show: a team did not come, and its opponent wins if the match
+is not decided yet."""
 
 
 class WantedDecision(NamedTuple):
@@ -84,7 +85,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
 
 
 def _matches(found: Changes, was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say how the matches that change would stand, and how many of each stage would disappear."""
+    """Say how each changed match would stand, and how many matches of each stage would be gone."""
     gone: Counter[str] = Counter()
     for before, match in found.matches:
         if match is not None:
@@ -131,7 +132,7 @@ def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:
 
 
 def _follows(was: Contest, then: Contest) -> Iterator[Phrase]:
-    """Say which stages would end, and which draw would follow, or would wait for the organiser."""
+    """Say which stages a decision would end, and which draw would follow or wait for a person."""
     ended = {view.name for view in was.stages if view.over}
     for view in then.stages:
         if view.over and view.name not in ended:

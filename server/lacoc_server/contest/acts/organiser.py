@@ -267,7 +267,7 @@ def play_headless(
         tell: called for each team whose bot pressed keys that its gait does not have.
 
     Returns:
-        The sheet at the end, and how many games this call played.
+        The contest's sheet after its last game, and how many games this call played.
 
     Raises:
         UserError: if the contest runs already, has no stage or too few teams, if a game has no time
@@ -321,11 +321,11 @@ def prepare(
         where: the contest.
         store: its facts.
         entering: whether teams may still enter.
-        headless: whether there are no courts; a stage of open matches needs them.
+        headless: whether there are no courts; then a file with only an open stage has no stage.
 
     Raises:
-        UserError: if the file has no stage, a stage that is drawn has changed there, or there are
-            too few teams.
+        UserError: if the file has no stage, if it has changed a stage that is drawn already, or if
+            there are too few teams.
     """
     if not where.plans and (headless or where.open_stage is None):
         raise UserError(say("contest.no-stages", file=str(where.file)))

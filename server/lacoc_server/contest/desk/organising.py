@@ -228,7 +228,7 @@ def tokens(book: Book, by: str) -> TokenList:
         by: who asks; only the organiser ("") gets the tokens of the staff.
 
     Raises:
-        UserError: if a new token can't be written.
+        UserError: if a token is missing, and a new one can't be written.
     """
     staff = () if by else book.secrets.staff_names
     people = [team.name for team in book.contest.teams if not (team.bot or team.gone)]

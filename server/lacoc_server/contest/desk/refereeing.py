@@ -1,4 +1,4 @@
-"""Answers a court's referee: which matches come next there, and what a result would change."""
+"""Answers a court's referee: the next matches at this court, and what a result would change."""
 
 from lacoc_server.contest.acts import deciding
 from lacoc_server.contest.desk import overview

@@ -1,7 +1,7 @@
 """A contest without a network: bots play all its games as fast as the machine can.
 
 A game is computed once. Its record is named by a hash of all that decides the game. So if the
-contest is played again, the games whose records are there need not be played. If an entry has
+contest is played again, games whose records exist need not be played. If an entry has
 changed, only games that depend on it are played again.
 """
 
@@ -40,8 +40,8 @@ bots start this many ticks later."""
 _MOST_DEATHS = 3
 """How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3
-"""If a game was void this many times and physics stops again, it counts as a draw without
-points."""
+"""If a game was void this many times because MuJoCo could not go on, and that happens once more,
+the game counts as a draw without points."""
 
 
 class GameEngine(Protocol):

@@ -74,7 +74,7 @@ def match_id(number: int) -> str:
 
 
 def first_number(record: Path | None) -> int:
-    """Return a free number for a new record in a folder: one more than the highest there."""
+    """Return a free number for a new record: one more than the highest in the folder `record`."""
     known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
     return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
 
@@ -252,7 +252,7 @@ def _player(arena: arenas.Arena, seated: Seated, late_ticks: int) -> Player:
 
 
 def setup_of(match_id: str, arena: arenas.Arena, limits: Mapping[str, float]) -> Setup:
-    """Return the setup of a match that is played without a network."""
+    """Return id, arena, settings and limits of a match that is played without a network."""
     return Setup(
         match_id=match_id,
         court=COURT,

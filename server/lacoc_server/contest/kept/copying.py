@@ -28,7 +28,7 @@ class Taken(Enum):
 
 
 def have(folder: Path, match_id: str) -> dict[str, int]:
-    """Return the files of a match's record that are here, each with its length in bytes.
+    """Return the files of a match's record that this machine has, each with its length in bytes.
 
     Args:
         folder: folder of the records.
@@ -84,13 +84,13 @@ def _finish(folder: Path, match_id: str, packed: Path) -> None:
 
 
 def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:
-    """Return whether a part belongs to a match's record, and begins where the copy here ends.
+    """Return whether a part belongs to a match's record, and begins where this machine's copy ends.
 
-    So a machine that only pretends to be the court can't write other files here.
+    So a machine that only pretends to be the court can't write other files on this machine.
 
     Args:
         match_id: the match.
-        have: length in bytes of each file that is here, by its name.
+        have: length in bytes of each file that this machine has, by the file's name.
         part: what the other machine sent.
     """
     segment = files.segment_name(Path(part.file))

@@ -268,7 +268,7 @@ class EntryFolder:
         self.path = path
 
     def save(self, entry: ContestEntry) -> str:
-        """Keep an entry; return its hash. An entry that is there already is not written again.
+        """Keep an entry; return its hash. An entry that the folder has is not written again.
 
         Raises:
             UserError: if it can't be written.
@@ -295,7 +295,7 @@ class EntryFolder:
         """Read an entry.
 
         Raises:
-            UserError: if it is not there, or if its files have changed since they were saved.
+            UserError: if the folder lacks it, or if its files have changed since they were saved.
         """
         place = self.path / entry_hash
         if not ENTRY_HASH.fullmatch(entry_hash):  # it may come from facts that a stranger wrote

@@ -82,4 +82,4 @@ def check_office(machine: Machine) -> None:
 
 
 class Retired(UserError):
-    """The contest's office goes on at another machine; here it must not be started again."""
+    """The contest's office goes on at another machine; on this one it must not start again."""

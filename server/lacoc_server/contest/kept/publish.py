@@ -79,7 +79,7 @@ def records_of(facts: Iterable[AnyFact]) -> dict[str, str]:
 
 
 def entries_of(facts: Iterable[AnyFact]) -> set[str]:
-    """Return the hashes of all entries."""
+    """Return the hashes of all entries that the facts name."""
     return {fact.files for fact in facts if isinstance(fact, Entered | FilesChanged) and fact.files}
 
 
@@ -101,7 +101,7 @@ def _save_record(source: Path, to: Path, wanted: str) -> None:
 
 
 def _copy(source: Path, to: Path, wanted: str) -> None:
-    """Copy a record; one that is there already is not copied again.
+    """Copy a record to the path `to`, unless the same record is at this path already.
 
     Raises:
         UserError: if it is missing, or its hash is not the one in the facts.

@@ -11,7 +11,7 @@ from lacoc_shared.words import say
 
 
 def stand_ins(path: Path) -> list[str]:
-    """Return the names of the courts that run here because their own machine was lost.
+    """Return the names of the courts that run on the office's machine in place of their own.
 
     Args:
         path: the list; a name stands on each line.

@@ -146,10 +146,10 @@ class FactStore:
         return found
 
     def copy(self, facts: Sequence[AnyFact], bodies: Sequence[str]) -> None:
-        """Store facts copied from another machine, with the same text as there.
+        """Store facts copied from another machine, with the same text as in its file.
 
         Args:
-            facts: the facts, which follow those that are here.
+            facts: the facts, which follow those that this file has.
             bodies: the stored text of each of these facts on the other machine.
 
         Raises:

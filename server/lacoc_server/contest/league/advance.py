@@ -63,7 +63,8 @@ def _reason(
 ) -> Phrase:
     """Say why a team goes on: its place, and which tie-break ranked it above the next team.
 
-    The last of several teams with equal points is told which one ranked it below the team above.
+    For the last of several teams with equal points, say which tie-break ranked it below the team
+    above it.
     """
     at = next(at for at, row in enumerate(table.rows) if row.team == team)
     row, *behind = table.rows[at:]

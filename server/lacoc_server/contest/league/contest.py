@@ -145,9 +145,11 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     announced: Announced | None
     """The organiser's announcement on all pages; None: there is none."""
     ended_ms: dict[str, tuple[str, int]]
-    """By team: the pairing of its newest game, and when that ended."""
+    """By team: the pairing of its newest game, and when this game ended, in milliseconds since
+    1970, UTC."""
     stages_ended_ms: dict[str, int]
-    """By stage: when its newest game ended; a stage without a game is not there."""
+    """By stage: when its newest game ended, in milliseconds since 1970, UTC. A stage without a
+    game is left out."""
     unused: tuple[Unused, ...]
 
     @property
@@ -172,10 +174,10 @@ class Changes(msgspec.Struct, frozen=True, kw_only=True):
     """The differences between two contests, for example before and after one more fact."""
 
     matches: tuple[tuple[ContestMatch | None, ContestMatch | None], ...]
-    """Each match that has other teams, another state or another winner: the match before and after.
+    """Each match whose teams, state or winner differ: as it is in the contest before, and after.
     None: it is not in that contest."""
     ranks: tuple[tuple[str, str, int, int], ...]
-    """Each team with another rank: stage, team, rank before and after."""
+    """Each team whose rank in a stage differs: stage, team, rank before and after."""
     leaving: tuple[str, ...]
     """The teams that take part in the contest before, and have left it in the contest after."""
 

@@ -169,7 +169,7 @@ def drawn_stages(
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:
-    """Replace a team of a stage by its substitute, unless this one is in the stage already."""
+    """Replace a team of a stage by its substitute, unless the stage has the substitute already."""
     if fact.substitute in stage.entries:
         return stage
 

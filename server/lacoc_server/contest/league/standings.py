@@ -1,4 +1,4 @@
-"""Ranks teams by the results of matches; a list of codes breaks ties."""
+"""Ranks teams by the results of matches, and equal teams by a list of tie-break codes."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
@@ -98,7 +98,7 @@ class _Tally:
             )
 
     def opponents(self, team: str) -> list[int]:
-        """Return the points of each opponent; for a match that was not played, the team's own."""
+        """Return each opponent's points; for a match that was not played, the team's own points."""
         return [
             self.points[other] if played and other else self.points[team]
             for other, _, played in self.matches[team]
@@ -194,7 +194,7 @@ def standings(
 
 
 def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -> str:
-    """Return the first code with different values for two teams; "": no code tells them apart."""
+    """Return the first code whose values for two teams differ; "": no code tells them apart."""
     values = zip(codes, above, below, strict=False)
     return next((code for code, one, other in values if one != other), "")
 
@@ -202,7 +202,7 @@ def _decider(codes: Sequence[str], above: Sequence[int], below: Sequence[int]) -
 def _split(
     group: Sequence[str], code: str, tally: _Tally, values: dict[str, list[int]]
 ) -> list[list[str]]:
-    """Split teams that are equal so far by one more code; add each team's value to `values`."""
+    """Split a group of equal teams by one more tie-break; add each team's value to `values`."""
     value = {team: TIE_BREAKS[code](tally, team, group) for team in group}
     for team in group:
         values[team].append(value[team])

@@ -92,7 +92,8 @@ class AwayCourt:
         link_to: makes the office's connection to a court, from a session and the court's name.
         open_here: returns a context manager that runs the court on this machine, and gives its
             address.
-        tell: called with a phrase for people: the court goes on here, or can't be opened here.
+        tell: called with a phrase for people: the court goes on at the office's machine, or can't
+            be opened there.
     """
 
     def __init__(
@@ -135,7 +136,9 @@ class AwayCourt:
         return self._is_here or self._copy.is_whole
 
     def step(self, office: Office, *, closing: bool = False) -> None:
-        """Look at the court once: copy its record, or open it here if it is gone. This never waits.
+        """Look at the court once, without waiting.
+
+        Copy its record; if the court is gone, open it on the office's machine.
 
         Args:
             office: the office.
@@ -227,7 +230,7 @@ class AwayCourt:
         return address, self._link_to(session, self.name)
 
     def _end_elsewhere(self) -> None:
-        """If the court on the other machine comes back, tell it to end: the court is here now."""
+        """If the court on the other machine comes back, tell it to end: it runs on this one now."""
         if self._there is None:
             return
         self._there.poll()

@@ -190,7 +190,7 @@ class CourtLink:
 
         Args:
             match_id: the match.
-            have: length in bytes of each file of the record that is here, by its name.
+            have: length in bytes of each file of the record that the office has, by its name.
         """
         request = Copy(
             token=self._token, generation=self._generation, match_id=match_id, have=dict(have)
@@ -296,7 +296,7 @@ class CourtLink:
 
     @property
     def _has_events(self) -> bool:
-        """Whether the newest event that the court's health mentions has arrived here.
+        """Whether the office has the newest event that the court's health mentions.
 
         Also true if the court has no events.
         """

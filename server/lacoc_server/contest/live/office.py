@@ -48,7 +48,7 @@ class Office:
         store: the facts.
         entries: the files of the teams, as they were weighed in.
         token_of: returns a team's token.
-        links: the courts by name, in the order in which they are filled; None: a court that is not
+        links: the courts by name, in the order in which they get games; None: a court that is not
             connected yet.
         addresses: the courts' addresses for contestants, by name.
         least_rest_ms: shortest time between two matches of a team.

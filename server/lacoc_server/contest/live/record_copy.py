@@ -36,7 +36,7 @@ class RecordCopy:
         return not self._wanted
 
     def want(self, match_id: str) -> None:
-        """Begin to copy the record of a match of this court, unless the whole record is here."""
+        """Begin to copy a match's record from the court, unless the folder has the whole record."""
         name = MatchName.parse(match_id)
         if name is None or name.court != self._court or match_id in self._wanted:
             return

@@ -89,9 +89,10 @@ def play_live(
 
     Args:
         file: the contest file.
-        opened: called when courts and pages are there.
+        opened: called when courts and pages can be reached.
         progress: called with the numbers of decided and of all matches, after each change.
-        tell: called with what the organiser must know: a court can't be opened, or goes on here.
+        tell: called with what the organiser must know: a court can't be opened, or goes on at this
+            machine.
         news: called with a line for each thing that happens: a called game, a result, a lost court.
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
@@ -102,7 +103,7 @@ def play_live(
             stay until somebody interrupts them.
 
     Returns:
-        The sheet at the end.
+        The contest's sheet when this call ends.
 
     Raises:
         KeyboardInterrupt: if it is interrupted before the contest is over.
@@ -257,8 +258,13 @@ def _opened(stack: ExitStack, parts: Mapping[str, AbstractContextManager[str]]) 
 
 
 def _is_done(passed_s: float, away: Sequence[AwayCourt]) -> bool:
-    """Return whether the office may end, `passed_s` after its courts need not stay open any more.
+    """Return whether the office may end after the contest.
 
-    It may if all records of courts on other machines are here, or if it has waited for `_COPY_S`.
+    It may if it has copied all records of courts on other machines, or has waited for `_COPY_S`.
+
+    Args:
+        passed_s: for how long the courts have not had to stay open any more [s]; negative: they
+            still must.
+        away: the courts on other machines.
     """
     return passed_s > 0 and (passed_s > _COPY_S or all(one.is_copied for one in away))

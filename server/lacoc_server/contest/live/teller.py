@@ -84,16 +84,18 @@ class Teller:
     def tell(
         self, contest: Contest, facts: Sequence[AnyFact], seen: Mapping[str, SeenCourt], now_ms: int
     ) -> None:
-        """Find out where each team plays or waits, and send this to the courts that need it.
+        """Find out where each team plays or waits, and send this to the courts.
+
+        A court is told again if this has changed since the last time, or after `_AGAIN_MS`.
 
         Args:
             contest: the contest.
             facts: its facts, in their order.
-            seen: the courts, in the order in which they are filled.
+            seen: the state of each court, in the order in which they get games.
             now_ms: the time, in milliseconds since 1970, UTC.
 
         Raises:
-            UserError: if a new token can't be written.
+            UserError: if a team has no token yet, and a new one can't be written.
         """
         calls = tuple(court.call for court in seen.values())
         waiting = self._applicants()

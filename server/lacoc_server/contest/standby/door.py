@@ -81,7 +81,7 @@ class StandbyDoor:
         self._store.__exit__()
 
     def judge(self, payload: bytes) -> bytes | Refusal:
-        """Answer an encrypted request; refuse it if the sender's machine has another token."""
+        """Answer an encrypted request; refuse it if the sender's token is not this machine's."""
         if len(payload) > ASK_MAX_BYTES:
             return Refusal(say("standby.not-proven"))
         try:

@@ -1,6 +1,6 @@
 """Keeps a copy of the folder of another machine's office, and brings it up to date step by step.
 
-A step asks what the office has, and copies what is missing: first entries, secrets and records,
+A step asks what the office has, and copies what this folder lacks: first entries, secrets, records,
 because facts can name them, then the facts themselves. The facts of a step were read before its
 records. So if copying stops at any moment, the copy has the record of each of its results, at least
 up to the end of the match.
@@ -106,7 +106,8 @@ class Follower:
         Raises:
             NotThere: if the office does not answer. What was copied before stays; call this again.
             CopyingEnded: if this machine takes over as the office.
-            UserError: if the office is not the right one, or something can't be read or written.
+            UserError: if the office has another token than this machine, or other facts than those
+                copied so far, or if something can't be read or written.
         """
         for _ in range(_TRIES):
             with suppress(_Changed):

@@ -1,6 +1,6 @@
 """Messages between an office and the machine that copies it (the second machine).
 
-The second machine says what it has, and the office answers with what is missing. Neither keeps a
+The second machine says what it has, and the office answers with what it lacks. Neither keeps a
 state of the other, so both can be restarted at any time. `sealing` encrypts the messages.
 """
 
@@ -30,7 +30,7 @@ class StandbyAsk(
 
 
 class KnockAsk(StandbyAsk, frozen=True, kw_only=True, tag="knock"):
-    """Asks whether an office is there, and tells it the sender's generation.
+    """Asks whether an office runs on the other machine, and tells it the sender's generation.
 
     The answer is `OfficeThere`.
     """
@@ -70,7 +70,7 @@ AnyAsk = KnockAsk | StepAsk | PartAsk | RecordAsk
 
 
 class OfficeThere(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="known"):
-    """Answer to `KnockAsk`: an office is here, with its generation."""
+    """Answer to `KnockAsk`: an office runs on this machine, with its generation."""
 
     generation: int
 

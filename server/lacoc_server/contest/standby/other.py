@@ -24,7 +24,7 @@ class NotThere(Exception):
 
 
 class OtherToken(UserError):
-    """An office answers, but with another token, so its messages can't be opened."""
+    """An office answers, but its token is not this machine's, so its answers can't be decrypted."""
 
 
 class LacksIt(Exception):
@@ -64,7 +64,7 @@ class Other:
 
         Raises:
             NotThere: if nobody answers.
-            OtherToken: if the other machine has another token.
+            OtherToken: if the other machine's token is not this machine's.
             LacksIt: if the other machine does not have what was asked for.
         """
         sealed = self._sealing.seal(encode(request), REQUEST)

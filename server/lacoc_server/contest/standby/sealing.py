@@ -14,7 +14,7 @@ _NONCE_BYTES = 12
 
 
 class BadSeal(Exception):
-    """The bytes can't be decrypted: the key or the purpose is another one, or they were changed."""
+    """Bytes can't be decrypted: they were made with another key or purpose, or were changed."""
 
 
 class Sealing:

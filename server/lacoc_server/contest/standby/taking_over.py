@@ -91,7 +91,7 @@ def _check_gone(other: Other) -> None:
 
 @contextmanager
 def _alone(where: ContestFolder) -> Iterator[None]:
-    """End the program that copies into this folder; until the block ends, no other one may use it.
+    """End the program that copies into this folder; until the block ends, let no other one begin.
 
     Raises:
         UserError: if another program holds the folder.
@@ -116,7 +116,7 @@ def set_aside(records: Path, facts: Sequence[AnyFact]) -> None:
     """Rename the records of unfinished matches whose calls are not among the facts.
 
     The other machine called these matches after its facts were last copied. No court may go on with
-    them, because the office here would not take their results.
+    them, because this machine's office would not take their results.
 
     Args:
         records: folder of the records.

@@ -69,7 +69,7 @@ def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase
 
 
 def _check_facts(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
-    """Yield a phrase if the file of facts has more than the facts themselves, such as a field."""
+    """Yield a phrase if the file of facts has more than the facts, such as an unknown field."""
     if regular.read(folder, FACTS, most_bytes=_MOST_BYTES) != league_facts.encode(facts):
         yield say("verify.more-in-facts", file=FACTS)
 

@@ -35,7 +35,7 @@ class SetMarker(msgspec.Struct, frozen=True):
 
 
 class Note(msgspec.Struct, frozen=True):
-    """What happened in a step: a judged tick, or a referee's change of a marker.
+    """What happened in a step: a tick that the rules judged, or a referee's change of a marker.
 
     The numbers that the rules saw in the step (the robots' motion) are kept apart.
     """
@@ -224,7 +224,7 @@ class History:
 
         Args:
             fold: the judgement without the event, from `without`.
-            next_number: log number of the first event that it has and the match had not.
+            next_number: log number for the first event of `fold.appeared`; later ones follow.
         """
         self._notes = dict(fold.notes)
         for number, (index, place, _) in enumerate(fold.appeared, next_number):
@@ -281,11 +281,11 @@ class History:
         return after, events
 
     def _keep(self, note: Note, numbers: tuple[int, ...]) -> None:
-        """Keep the note of a new judged tick or change of a marker; events in it can be taken back.
+        """Keep the note of a step: a tick that the rules judged, or a referee's change of a marker.
 
         Args:
-            note: what happened.
-            numbers: log numbers of the events that can be taken back.
+            note: what happened in the step.
+            numbers: log numbers of the step's events; from now on each can be taken back.
         """
         for number in numbers:
             self._step_of[number] = self._count
@@ -294,7 +294,7 @@ class History:
         self._count += 1
 
     def _forget(self) -> None:
-        """Forget all judged ticks so far, because no event in them can be taken back.
+        """Forget the ticks that the rules have judged: no event in them can be taken back.
 
         Judging again will begin with the present state. So memory does not grow in a practice,
         which has no such events and may go on for days.
@@ -304,7 +304,7 @@ class History:
             self._count, self._seen, self._notes = 0, bytearray(), {}
 
     def _steps(self) -> Iterator[tuple[int, Note, Observation | None]]:
-        """Yield each judged tick and each referee's change of a marker, in order.
+        """Yield each tick that the rules judged, and each referee's change of a marker, in order.
 
         Each comes with its index, its note and what the rules saw (None for a change of a marker).
         """
@@ -338,7 +338,7 @@ def _note(
     numbers: tuple[int, ...] = (),
     idle: tuple[int, ...] = (),
 ) -> Note:
-    """Return the note of a judged tick; `_PLAIN` if nothing happened but that robots moved.
+    """Return the note of a tick that the rules judged; `_PLAIN` if robots only moved in it.
 
     A note is needed if a robot was put at a place, touched a marker or is idle, or if the rules
     decided an event.
@@ -372,7 +372,7 @@ def _strike(note: Note, number: int) -> Note:
     """Return a note in which an event, or a referee's change of a marker, is marked as taken back.
 
     Args:
-        note: note of the judged tick, or of the change.
+        note: note of the tick in which the event happened, or of the change.
         number: number of the event, or of the decision that changed the marker.
     """
     if note.changed is not None:

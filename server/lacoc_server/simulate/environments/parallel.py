@@ -94,7 +94,8 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         """Begin an episode.
 
         Args:
-            seed: chooses the opening of this episode and of those after it; None: go on drawing.
+            seed: chooses the opening of this episode and of those after it; None: the earlier
+                seed goes on.
             options: "place" and "late_ticks" replace what the seed would choose.
 
         Returns:
@@ -170,7 +171,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
         )
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next.
+        """Return the state of the environment as bytes, without the openings still to be drawn.
 
         Raises:
             UserError: if no episode has begun.

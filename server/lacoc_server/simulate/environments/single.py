@@ -115,7 +115,8 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         """Begin an episode.
 
         Args:
-            seed: chooses the opening of this episode and of those after it; None: go on drawing.
+            seed: chooses the opening of this episode and of those after it; None: the earlier
+                seed goes on.
             options: "place", "late_ticks" and "seat" replace what the seed would choose.
 
         Returns:
@@ -168,7 +169,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         return self._senses.see(self.episode.frame, self.seat)
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next.
+        """Return the state of the environment as bytes, without the openings still to be drawn.
 
         A bot may remember what it saw. So the frames that it saw are saved, and the bytes grow with
         the episode: some 270 bytes a beat.

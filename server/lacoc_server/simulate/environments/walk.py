@@ -86,8 +86,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     """A robot on an open floor.
 
     With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
-    joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move
-    there at the robot's own speed (AngMin). An episode ends when the robot falls: its body is
+    joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move to
+    these at the robot's own speed (AngMin). An episode ends when the robot falls: its body is
     tilted by more than 60 degrees. After `seconds` it is cut.
 
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
@@ -285,7 +285,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return np.concatenate([seen, speed[2:], pose[7:], self._state.angles]).astype(np.float32)
 
     def save(self) -> bytes:
-        """Return the whole environment between two steps, but not what `reset` will draw next.
+        """Return the state of the environment as bytes, without first postures still to be drawn.
 
         Raises:
             UserError: if no episode has begun.

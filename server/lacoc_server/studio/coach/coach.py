@@ -58,7 +58,7 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
         gait: the robot's gait.
         goal: what the key is for.
         key: digit of the key. None: choose it by the goal. To turn, it is the sample's key for
-            that direction; to go forward, the key of `forward_key`.
+            that direction; to go forward, the key that `trial.keys.forward_key` chooses.
 
     Raises:
         UserError: if the gait has no such key at level B.

@@ -40,7 +40,7 @@ class Repaired(NamedTuple):
 
 
 def repair(trials: Trials) -> Iterator[Repaired]:
-    """Repair the mistakes of a table, one after the other, as long as this helps.
+    """Repair the mistakes of a table, one after the other, as long as this raises the score.
 
     Args:
         trials: tries tables for the task.
@@ -79,7 +79,7 @@ def repair(trials: Trials) -> Iterator[Repaired]:
 
 
 def _best(tables: list[Angles], scores: list[float]) -> list[Angles]:
-    """Choose the tables to try exactly: the first, most probable one, and the best others.
+    """Choose tables to try with the contest's physics: the first, most probable one, and the best.
 
     They keep their order.
     """

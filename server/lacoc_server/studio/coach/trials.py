@@ -88,7 +88,7 @@ class Trials:
         return self._scores(tables, _EXACT_WAY)
 
     def quick(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with the contest's physics over fewer cycles; this is enough for a ranking.
+        """Score tables as `exact` does, but over fewer cycles; this is enough for a ranking.
 
         Raises:
             Stopped: if the search was stopped.
@@ -97,7 +97,7 @@ class Trials:
         return self._scores(tables, _QUICK_WAY)
 
     def rough(self, tables: Sequence[Angles]) -> list[float]:
-        """Score tables with larger physics steps; this is enough to find which may be better.
+        """Score tables with larger steps of physics than a contest's, to find which may be better.
 
         Raises:
             Stopped: if the search was stopped.

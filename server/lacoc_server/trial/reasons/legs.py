@@ -98,7 +98,7 @@ def missing_posture(seen: SeenTrial) -> Iterator[TrialFinding]:
 
 
 def half_cycle(seen: SeenTrial) -> Iterator[TrialFinding]:
-    """Find standing feet that push the body back when a key of level A follows another one."""
+    """Find standing feet that push the body back while one key of level A follows another key."""
     if seen.before is None:
         return
     digit, posture = seen.before

@@ -66,7 +66,7 @@ def likely_mistake(form: KeyForm) -> Repair | None:
 
 
 def _strange_deg(form: KeyForm) -> float:
-    """Return how strange a table is [deg]: how much like legs differ, and how far joints turn."""
+    """Return how strange a table is [deg]: by the differences of legs, and how far joints turn."""
     angles = form.angles_deg
     way_deg = float(np.abs(angles - np.roll(angles, 1, axis=0)).sum())
     return form.oddness_deg + _WAY * way_deg

@@ -137,7 +137,7 @@ def _backward(form: KeyForm, thrust: Floats) -> Iterator[Repair]:
 
 
 def _lifted(form: KeyForm, said: Phrase, cell: TableCell, rare: float) -> Iterator[Repair]:
-    """Yield repairs that lift half of the feet in half of the rows, then the other half."""
+    """Yield repairs that lift half of the feet in half of the rows, the others in the rest."""
     angles = form.angles_deg
     half = form.postures // 2
     base = angles[:, 1:].min(axis=0)

@@ -19,7 +19,8 @@ class RulesAsk(Ask, frozen=True, kw_only=True, tag="rules"):
 class HandOutAsk(Ask, frozen=True, kw_only=True, tag="hand_out"):
     """Offer a gait's table to all students or to a group.
 
-    The request contains the table or names a student whose table it is. Else it is the sample's.
+    The request contains the table, or names a student whose table is offered. If it does neither,
+    the sample's table is offered.
     """
 
     title: Name = ""

@@ -118,10 +118,10 @@ class Diary:
             await _kept(asyncio.gather(*done))
 
     async def vote(self, poll: str, choice: str) -> None:
-        """Count the student's vote whether walk A or B fits a word better.
+        """Count the student's vote whether A (the sample) or B (the own gait) fits a word better.
 
         Keep as evidence that the student voted. Do nothing if the student voted in this poll
-        before.
+        before. The name of a poll is its word.
         """
         if self._is_forgotten or Voted(poll=poll) in self._evidence:
             return

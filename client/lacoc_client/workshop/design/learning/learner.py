@@ -217,7 +217,7 @@ class Learner:
 
         Raises:
             FileRefused: with every mistake of the robot file; mistakes of the table are returned.
-            UserError: if a key of a locomotion table is missing.
+            UserError: if a locomotion table has no row of a key below its highest key.
         """
         spec = await asyncio.to_thread(_robot, asked.robot)
         table = asked.table
@@ -242,7 +242,7 @@ def _version(table: FileTable, sequences: object) -> str:
 
     Raises:
         FileRefused: with every mistake of the table.
-        UserError: if a key of a locomotion table is missing.
+        UserError: if a locomotion table has no row of a key below its highest key.
     """
     data = sent_gait(table).data + repr(sequences).encode()
     return hashlib.blake2b(data, digest_size=8).hexdigest()

@@ -187,7 +187,7 @@ def _files(
 
     Raises:
         FileRefused: with every mistake of the table.
-        UserError: if a key of a locomotion table is missing.
+        UserError: if a locomotion table has no row of a key below its highest key.
     """
     if table is None:
         return GaitFiles(robot=robot, sequences=sequences)

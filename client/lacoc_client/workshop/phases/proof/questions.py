@@ -89,7 +89,7 @@ def lesson_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
     """Ask where a foot goes if a change is undone, or made on the opposite leg of the robot.
 
-    It is the last change for which the student guessed where the foot goes.
+    The change is the last one for which the student guessed where the foot goes.
     """
     guess = foot_guesses(seen)[-1]
     joint, leg = _LEVELS[guess.level], _label(guess.of_legs, guess.leg)
@@ -125,7 +125,7 @@ def leg_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask what the support margin of the trial means, or which feet carried the robot."""
+    """Ask about the last trial: what its support margin means, or which feet carried the robot."""
     facts = _last_trial(seen).facts
     seed = len(seen)
     if turn % 2 == 0 and facts.margin_mm is not None:
@@ -157,7 +157,7 @@ def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def push_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask which feet push the body, or where they go, seen from the body."""
+    """Ask which feet pushed the body in the last trial, or which way they moved, seen from it."""
     facts = _last_trial(seen).facts
     legs, stood, seed = len(facts.duty), facts.stood, len(seen)
     if turn % 2 == 0:
@@ -186,7 +186,10 @@ def push_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask where the key's seam (last row to first row) is, or which row is half a cycle later."""
+    """Ask between which rows of a key its seam is, or which row is half a cycle after the first.
+
+    The seam of a key is the step from its last row to its first.
+    """
     trial = _last_trial(seen)
     rows = trial.rows or tuple(range(1, max(2, trial.facts.postures) + 1))
     first, last = rows[0], rows[-1]
@@ -213,7 +216,7 @@ def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def differs_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask how the walk differs from that with the sample gait, or how long its cycle lasts."""
+    """Ask how the student's walk differs from the sample gait's, or how long its cycle lasts."""
     periods_s = [one.facts.cycle_s for one in seen if isinstance(one, Tried) and one.facts.cycle_s]
     compared = [one.differs for one in seen if isinstance(one, Compared)]
     differs = compared[-1] if compared else ()

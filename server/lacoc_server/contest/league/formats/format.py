@@ -60,13 +60,17 @@ class Format(Protocol):
     ) -> bool:
         """Return whether the stage ends before all its rounds are drawn.
 
-        This is called only when all matches of the drawn rounds are decided.
+        This is called only when all matches of the drawn rounds are decided. `gone` has the teams
+        that have left the contest.
         """
 
     def next_round(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
-        """Pair the next round, once all earlier rounds are decided."""
+        """Pair the teams for the next round, without those in `gone`, which have left the contest.
+
+        This is called only when all earlier rounds are decided.
+        """
 
     def tables(
         self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]

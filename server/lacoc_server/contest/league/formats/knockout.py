@@ -39,7 +39,7 @@ class Knockout(DrawnAtOnce):
     def tables(
         self, stage: Stage, matches: Mapping[str, ContestMatch], last: Collection[str]
     ) -> tuple[Table, ...]:
-        """Rank the teams by how far they came; those still in come first."""
+        """Rank the teams by the round in which they went out; first come those that are not out."""
         places = _places(matches.values())
         rows = standings(stage.entries, counted(matches.values()), ORDER, last).rows
         rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0))))
@@ -59,7 +59,7 @@ class Knockout(DrawnAtOnce):
 
 
 def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
-    """Yield the decided matches that settle the winner's place, too, such as the final."""
+    """Yield the decided matches that settle the winner's final place, such as the final itself."""
     for match in matches:
         if match.pairing.winner_place and match.state == "decided":
             yield match
@@ -92,10 +92,11 @@ def _leaving(match: ContestMatch) -> list[str]:
 
 
 def seeded(entries: Sequence[str]) -> list[AnySource]:
-    """Place the teams in a bracket, so that the best two can meet only in the final, and so on.
+    """Place the teams in a bracket, so that the best two can meet only in the final.
 
-    The list has a team or a bye for each place of round 1: as many as the next power of two. The
-    best teams have the byes.
+    The best four can meet only in the semi-finals or later, and so on for eight and more. The list
+    has a team or a bye for each place of round 1: as many as the next power of two. The best teams
+    have the byes.
     """
     order = [0]
     while len(order) < len(entries):

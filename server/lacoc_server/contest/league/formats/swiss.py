@@ -58,13 +58,16 @@ class Swiss(DrawnByRound):
     order = ORDER
 
     def rounds(self, stage: Stage) -> int:
-        """Return the number of rounds: as many as a knockout has, unless the plan says more."""
+        """Return the number of rounds: the stage's setting `rounds`, or, if it is 0, a knockout's.
+
+        A knockout of n teams has as many rounds as the logarithm of n to the base 2, rounded up.
+        """
         return stage.settings.rounds or max(1, (len(stage.entries) - 1).bit_length())
 
     def next_round(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
     ) -> tuple[Pair, ...]:
-        """Pair the next round."""
+        """Pair the teams for the next round, without those that have left the contest (`gone`)."""
         players = [one for one in history(stage, matches) if one.team not in gone]
         return tuple(
             (pair[0].team,) if len(pair) == 1 else seat_pair(pair[0], pair[1])
@@ -122,8 +125,8 @@ def seat_pair(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
     Who sat left less often sits left. If both did equally often, the team that sat right in its
-    last match sits left. If both sat on the same side, the team with the smaller number sits left
-    if this number is odd, else right.
+    last match sits left. If both sat on the same side, the team that is higher in the seeding sits
+    left if its place in the seeding is odd, else right.
     """
     first, second = sorted((one, other), key=lambda player: player.number)
     if first.number % 2 == 0:
@@ -160,7 +163,7 @@ def paired(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissT
 
 
 def dutch(players: Sequence[SwissTeam], round_number: int) -> list[tuple[SwissTeam, ...]]:
-    """Pair by the FIDE (Dutch) system."""
+    """Pair the players of a round by the FIDE (Dutch) system."""
     by_number = {player.number: player for player in players}
     numbers = {player.team: player.number for player in players}
     engine = DutchEngine(
@@ -209,7 +212,7 @@ def _colours(player: SwissTeam) -> list[str]:
 
 
 def _legal(pairs: Iterable[tuple[SwissTeam, ...]], players: Sequence[SwissTeam]) -> bool:
-    """Return whether everybody is paired once, and no rule is broken."""
+    """Return whether everybody is paired once, and no pair has one of the faults of `faults`."""
     found = list(pairs)
     everybody = sorted(player.number for pair in found for player in pair)
     byes = sum(len(pair) == 1 for pair in found)

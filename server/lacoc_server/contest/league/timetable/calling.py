@@ -18,7 +18,7 @@ OPEN_CALL = "open."
 
 
 def is_open_call(call: str) -> bool:
-    """Return whether a call is for an open match; the call of a game has the id of its fact."""
+    """Return whether the id of a call is of an open match; other calls have the id of a fact."""
     return call.startswith(OPEN_CALL)
 
 
@@ -121,12 +121,12 @@ def calls(
 ) -> list[Called]:
     """Return the calls that give the next games to the free courts.
 
-    A court whose open match has begun is not free. An open match that has not begun makes room for
-    the game.
+    A court whose open match has begun is not free. A court whose open match has not begun is free:
+    the called game replaces the open match.
 
     Args:
         contest: the contest.
-        seen: the courts, in the order in which they are filled.
+        seen: the courts, in the order in which they get games.
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team.
         held: games that a court refused, by pairing and number; they are not called.

@@ -100,8 +100,8 @@ def assign(
 
     Args:
         contest: the contest.
-        courts: courts that are there, in the order in which they are filled. Those with a running
-            game are not free.
+        courts: courts that answer, in the order in which they get games. Those with a running game
+            are not free.
         now_ms: the time, in milliseconds since 1970, UTC.
         least_rest_ms: shortest time between two matches of a team; games of one match follow each
             other without it.

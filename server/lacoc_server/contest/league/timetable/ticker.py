@@ -25,7 +25,7 @@ class Ticker:
     """Makes a line, once, for each thing that happens in the contest.
 
     Args:
-        facts: the facts that are there already; they give no lines.
+        facts: the facts that the contest has already; they give no lines.
     """
 
     def __init__(self, facts: Sequence[AnyFact]) -> None:

@@ -57,7 +57,7 @@ class SeenCourts(NamedTuple):
     """The courts as the office sees them, and their addresses."""
 
     seen: Mapping[str, SeenCourt]
-    """The courts by name, in the order in which they are filled."""
+    """The courts by name, in the order in which they get games."""
     addresses: Mapping[str, str]
     """The courts' addresses for contestants, by name."""
 
@@ -77,7 +77,7 @@ class OfficeKnowledge(NamedTuple):
     """What the office knows besides the facts, as of its newest look at the courts."""
 
     seen: Mapping[str, SeenCourt]
-    """The courts by name, in the order in which they are filled."""
+    """The courts by name, in the order in which they get games."""
     pace: ContestPace
     held: Mapping[tuple[str, int], Phrase]
     """Games that a court refused, by pairing and number, with the reason."""
@@ -340,7 +340,7 @@ def starts(
     Args:
         contest: the contest.
         coming: its matches that are still to come, from `foreseen`.
-        seen: the courts, in the order in which they are filled.
+        seen: the courts, in the order in which they get games.
         pace: the time now, and how long games and rests take.
     """
     now_ms, game, rest_ms = pace
