@@ -55,14 +55,14 @@ class Nearness:
         self.models = models
         model = models.stepped
         self._chosen: Any = model
-        self._then: Sequence[Sequence[float]] = []
-        """Where the bodies were when the model was chosen."""
         self._places: list[Any] = []
-        """Views: they always show where the bodies are. None if there is nothing to choose from."""
+        """Views of where the bodies are; none if there is nothing to choose from."""
+        self._moves: list[tuple[Any, Sequence[float]]] = []
+        """Each view, and the place of the body when the model was chosen."""
         if models.clear is None and models.apart is None:
             return
         self._places = [qpos.data[robot.root_qpos : robot.root_qpos + 3] for robot in robots]
-        self._then = [(math.nan,) * 3] * len(robots)
+        self._moves = [(place, (math.nan,) * 3) for place in self._places]
         self._reaches_m = [
             max(reach_m(model, geom, model.body_rootid[model.geom_bodyid[geom]]) for geom in geoms)
             for geoms in (robot.geoms.tolist() for robot in robots)
@@ -73,10 +73,11 @@ class Nearness:
 
     def model(self) -> Any:
         """Return the model for the next tick."""
-        now = [place.tolist() for place in self._places]
-        for here, there in zip(now, self._then, strict=True):
-            if not math.dist(here, there) <= _SKIN_M:  # the first time there is not a number
-                self._then, self._chosen = now, self._choose(now)
+        for place, then in self._moves:
+            if not math.dist(place.tolist(), then) <= _SKIN_M:  # the first time it is not a number
+                now = [place.tolist() for place in self._places]
+                self._moves = [*zip(self._places, now, strict=True)]
+                self._chosen = self._choose(now)
                 break
         return self._chosen
 
