@@ -2,7 +2,8 @@
 
 A seat's token is sent only with a join, and a referee's token with each decision. After a join
 the session's secret, 16 bytes from the court, seals every command and request of the seat: a
-keyed BLAKE2b of 8 bytes over the key expression and the numbers as text, joined by spaces.
+keyed BLAKE2b of 8 bytes over its key expression and its numbers (session, sequence number and so
+on) as text, joined by spaces.
 """
 
 import hashlib
