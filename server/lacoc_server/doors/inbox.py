@@ -143,7 +143,7 @@ class Inbox:
         random_bytes: returns as many random bytes as asked, for numbers and secrets of sessions.
         last_seqs: for a restarted court, the newest sequence numbers in its record, by seat.
         joined: for a restarted court, the seats that are held.
-        most_delay_ms: longest delay that makes the links equal; 0: links are not made equal.
+        most_delay_ms: longest common delay; 0: keys are not delayed.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
 """Which tokens open which seat of a court: those of the match that is assigned.
 
-Pure. A team's token opens its seat; its files are those that the office fixed before. Whoever has
-the token of an open seat sends a name and files.
+Pure. A team's token opens the team's seat, with the files that the office fixed before. A seat
+without a team has a token too: whoever has it sends a name and files.
 """
 
 from collections.abc import Collection, Iterator

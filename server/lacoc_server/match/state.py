@@ -60,7 +60,8 @@ class MatchState:
         folder: the arena's folder, if the arena is not installed.
 
     Raises:
-        UserError: if the arena is not installed, or if its settings or the limits are wrong.
+        UserError: if the arena is not installed, or if its settings or the limits for
+            robots are wrong.
     """
 
     def __init__(self, setup: Setup, make_physics: MakePhysics, folder: Path | None = None) -> None:

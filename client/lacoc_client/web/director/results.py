@@ -51,7 +51,7 @@ class Results:
         Args:
             now_s: the time, by a clock that never goes back [s].
             over: the matches that are over; a referee may still correct one.
-            going: court and match of each match that is not over. If one of them was over before,
+            going: court and match of each match that is not over. If a match was over before,
                 and a referee has corrected this, its result is dropped.
         """
         before = tuple(self._known.values())

@@ -1,9 +1,9 @@
 """Keeps a copy of the folder of another machine's office, and brings it up to date step by step.
 
 A step asks what the office has, and copies what this folder lacks: first entries, secrets, records,
-because facts can name them, then the facts themselves. The facts of a step were read before its
-records. So if copying stops at any moment, the copy has the record of each of its results, at least
-up to the end of the match.
+because facts can name them, then the facts themselves. These facts came with the office's answer,
+so they are older than the copies of the records. So if copying stops at any moment, the copy has
+the record of each of its results, at least up to the end of the match.
 """
 
 import os

@@ -230,11 +230,12 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         return self.observe(), {}
 
     def step(self, action: Any) -> tuple[Numbers, float, bool, bool, dict[str, Any]]:
-        """Let the beats of a step pass, or try a table of key 2.
+        """Let the beats of a step pass; if actions are tables, try one with key 2 (forward).
 
         Returns:
             What is seen; the reward; whether the robot falls (with a table always True); whether
-            time is up or physics stopped; and the parts of the reward, or all figures of a table.
+            time is up or physics stopped; and the parts of the reward, or all measures of a
+            table's trial.
 
         Raises:
             UserError: if no episode has begun, if it is over, or the action space does not have the

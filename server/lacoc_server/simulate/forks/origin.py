@@ -128,7 +128,10 @@ def _setup(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | 
 
 
 def _messages(source: ForkSource, beat: int, setup: Setup) -> list[Message]:
-    """Return the record's messages before a beat, with the fork's match id and without health."""
+    """Return the record's messages before a beat, with the fork's match id.
+
+    Verdicts on how well the match was held are left out.
+    """
     found: list[Message] = []
     for topic, number, data in source.messages:
         # A result has the number of beats so far, which is one more than its beat's number.

@@ -103,7 +103,7 @@ def _legs(form: KeyForm) -> Iterator[Repair]:
 
 
 def _rows(form: KeyForm) -> Iterator[Repair]:
-    """Yield repairs of rows: two rows are swapped, or a row gets the numbers of its partners."""
+    """Yield repairs of rows: two rows are swapped, or legs in a row get their partners' numbers."""
     angles = form.angles_deg
     for row in range(form.postures):
         for other in range(row + 1, form.postures):

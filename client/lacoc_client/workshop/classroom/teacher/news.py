@@ -15,7 +15,7 @@ from lacoc_shared.words import Phrase
 
 
 class Trouble(NamedTuple):
-    """The troubles of a class that the teacher's page shows."""
+    """The technical faults of a class that the teacher's page shows."""
 
     file: Phrase | None
     """What is wrong with the class file; None: nothing is wrong."""
