@@ -359,7 +359,8 @@ def test_teams_are_told_what_was_decided_about_their_match() -> None:
         news = found[team].news
         assert news is not None
         assert faults(news) == []
-        assert f"{absent} did not come. Reason: not seen since noon" in render(news)
+        wins = "You win this match. " * (team == here)
+        assert f"{absent} did not come. {wins}Reason: not seen since noon" in render(news)
     assert [there.news for name, there in found.items() if name not in first.teams] == [None] * 2
     cup.add(Entered, team="Late", files="f")
     cup.add(Substituted, team=absent, substitute="Late", reason="a broken leg")

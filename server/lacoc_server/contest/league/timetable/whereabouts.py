@@ -161,9 +161,11 @@ def _news(contest: Contest) -> dict[str, Phrase]:
     for one in decided(contest):
         if one.fact in unused or one.pairing not in matches:
             continue
-        for team in matches[one.pairing].teams:
+        match = matches[one.pairing]
+        for team in match.teams:
             if team and one.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
-                news[team] = say("team.news", what=one.what, reason=one.reason or None)
+                wins = say("team.wins") if team == match.winner else None
+                news[team] = say("team.news", what=one.what, reason=one.reason or None, wins=wins)
     return news
 
 
