@@ -67,7 +67,7 @@ class Writer {
 /** Passes on what writers send, in any order between them. */
 function deliver(writers) {
   for (const writer of writers.filter(({ isOnline }) => isOnline)) {
-    const parcel = writer.outbox.next();
+    const parcel = writer.outbox.next(0);
     if (parcel) writer.outbox.confirmed();
     for (const other of writers) {
       if (other === writer || !parcel) continue;
@@ -209,11 +209,12 @@ test("an outbox keeps the order, sends one parcel at a time, and again after a b
   const outbox = new Outbox();
   const shared = new SharedTable((update, names) => outbox.add(update, names, false));
   shared.write(contentOf(sample));
-  const first = outbox.next();
+  const first = outbox.next(3);
   shared.write(contentOf(t.setCell(sample, 1, 1, "5")));
-  assert.equal(outbox.next(), null);
+  assert.equal(outbox.next(4), null);
   outbox.returned();
-  const again = outbox.next();
+  const again = outbox.next(5);
+  assert.deepEqual([first.seen, again.seen], [3, 3], "it was typed before 4 and 5 were seen");
   assert.ok(again.update.length > first.update.length);
   assert.ok(again.names.includes("p6/1.0/1"));
   assert.deepEqual(cellNamed("p6/1.0/1"), { key: 1, rank: 0, col: 1 });

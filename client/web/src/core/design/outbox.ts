@@ -9,6 +9,8 @@ export interface Parcel {
   names: string[];
   /** Whether it has what the page has put into an empty table: no other page may have been quicker. */
   begins: boolean;
+  /** Number of the last update that the page had seen when this was sent first; null: it was not. */
+  seen: number | null;
 }
 
 export class Outbox {
@@ -32,15 +34,25 @@ export class Outbox {
 
   add(update: Uint8Array, names: readonly string[], begins: boolean): void {
     // What a page begins with was typed by nobody.
-    this.waiting = joined(this.waiting, { update, names: begins ? [] : [...names], begins });
+    this.waiting = joined(this.waiting, {
+      update,
+      names: begins ? [] : [...names],
+      begins,
+      seen: null,
+    });
   }
 
-  /** Take what waits, unless a parcel is on its way. */
-  next(): Parcel | null {
-    if (this.sent) return null;
-    this.sent = this.waiting;
+  /**
+   * Take what waits, unless a parcel is on its way.
+   * @param seen Number of the last update that the page has seen.
+   */
+  next(seen: number): (Parcel & { seen: number }) | null {
+    if (this.sent || !this.waiting) return null;
+    // What goes again was typed before the page saw what came in the break.
+    const parcel = { ...this.waiting, seen: this.waiting.seen ?? seen };
+    this.sent = parcel;
     this.waiting = null;
-    return this.sent;
+    return parcel;
   }
 
   /** The gateway has confirmed the parcel. */
@@ -66,5 +78,6 @@ function joined(one: Parcel | null, other: Parcel | null): Parcel | null {
     update: mergedUpdates([one.update, other.update]),
     names: [...new Set([...one.names, ...other.names])],
     begins: one.begins || other.begins,
+    seen: one.seen,
   };
 }

@@ -192,16 +192,16 @@ export class Sharing {
 
   private send(): void {
     clearTimeout(this.timer);
-    const parcel = this.name === null ? null : this.outbox.next();
+    const parcel = this.name === null ? null : this.outbox.next(this.seen);
     if (!parcel) {
       this.isKept.value = this.outbox.isEmpty;
       return;
     }
     this.isKept.value = false;
     const { epoch } = this;
-    const { update, names, begins } = parcel;
+    const { update, names, begins, seen } = parcel;
     const cells = names.filter(cellNamed);
-    const fields = { table: this.name, epoch, seen: this.seen, update, cells, begins };
+    const fields = { table: this.name, epoch, seen, update, cells, begins };
     const sentMs = performance.now();
     this.gateway.ask<{ seq: number }>("table", fields).then(
       () => {
