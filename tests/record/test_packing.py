@@ -76,6 +76,7 @@ def test_two_processes_write_no_file_together(
     with pytest.raises(UserError, match=r"m\.mcap\.part is being written"):
         PackedWriter(tmp_path, header())
     writer.close()
+    writer.close()
     assert [*tmp_path.iterdir()] == [writer.path]
     assert Record.read(writer.path).header == header()
 

@@ -57,6 +57,7 @@ class PackedFile:
         for topic, kind in KINDS.items():
             self._writer.register_channel(topic, "msgpack" if kind else "", 0)
         self._counts = [0] * (len(KINDS) + 1)
+        self._has_name = False
 
     def add(self, channel: int, beat: int, data: bytes) -> None:
         """Add a message.
@@ -90,14 +91,16 @@ class PackedFile:
             self._file.close()
 
     def name(self) -> None:
-        """Complete the file and give it its name.
+        """Complete the file and give it its name. A second call does nothing.
 
         Raises:
             OSError: if the disk refuses.
         """
         self.complete()
-        self.unfinished.rename(self._path)
-        files.sync_folder(self._path.parent)
+        if not self._has_name:
+            self.unfinished.rename(self._path)
+            self._has_name = True
+            files.sync_folder(self._path.parent)
 
     def discard(self) -> None:
         """Remove the unfinished file; do nothing if the disk does not allow it."""
