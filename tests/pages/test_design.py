@@ -106,6 +106,18 @@ class Designer(Contestant):
             self.page.wait_for_timeout(50)
         pytest.fail(f"the body stays at {before}")
 
+    def rests(self) -> list[float]:
+        """Wait until the body is drawn at one place for a second; return the place [m, world].
+
+        A picture moves to a new posture in steps, and a busy machine draws twice a second.
+        """
+        for _ in range(100):
+            before = self.body()
+            self.page.wait_for_timeout(1000)
+            if math.dist(before, self.body()) < 1e-4:
+                return before
+        pytest.fail("the body never rests")
+
     def paste(self, text: str) -> None:
         """Paste text into the focused element, as a browser does."""
         self.page.evaluate(

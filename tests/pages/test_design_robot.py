@@ -16,15 +16,14 @@ from lacoc_robots.library import find_robot
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
     """Give a folder with the sample's postures and no robot."""
-    folder = tmp_path_factory.mktemp("robot")
-    write_sample(folder)
-    return folder
+    write_sample(tmp_path)
+    return tmp_path
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
     """Give the address and the page key of a `lacoc design` on the folder."""
     with OwnPage(folder, "design") as command:
@@ -33,7 +32,7 @@ def address(folder: Path, built_pages: Path) -> Iterator[tuple[str, str]]:
 
 @pytest.mark.long
 def test_a_number_of_the_robot_is_changed_and_saved(
-    open_page: OpenPage, address: tuple[str, str], folder: Path
+    address: tuple[str, str], open_page: OpenPage, folder: Path
 ) -> None:
     """A new length shows in 3D at once; a wrong one is told at its field; saving keeps comments.
 
@@ -65,7 +64,7 @@ def test_a_number_of_the_robot_is_changed_and_saved(
     field_is(page, "first_link_m", "78")
     page.sees("[data-fact=width_m] td", "316")
     page.sees(".robot .unsaved", "not saved")
-    moved = page.body()
+    moved = page.rests()
     page.page.keyboard.press("Control+a")
     page.page.keyboard.type("300")
     page.press("Enter")
@@ -75,7 +74,7 @@ def test_a_number_of_the_robot_is_changed_and_saved(
     page.press("Escape")
     page.misses(".robot .wrong")
     assert field(page, "first_link_m") == "78"
-    assert page.body() == pytest.approx(moved, abs=1e-3)
+    assert page.rests() == pytest.approx(moved, abs=1e-3)
 
     # What only the robot as a whole forbids is told at the field too.
     page.find("[data-fact=link_radius_m] input").fill("20")
