@@ -48,6 +48,25 @@ PLACES = st.builds(
 )
 
 
+@given(st.lists(st.floats(-math.pi, math.pi), min_size=3, max_size=3))
+def test_a_robot_is_inside_its_ball(angles: list[float]) -> None:
+    """No part of a robot is farther from the origin of its body than the reach that is used."""
+    data = mujoco.MjData(MODELS.stepped)
+    nearness = Nearness(MODELS, data.qpos, ROBOTS)
+    for robot in ROBOTS:
+        data.qpos[robot.joint_qpos] = np.repeat(angles, len(robot.joint_qpos) // 3)
+    mujoco.mj_kinematics(MODELS.stepped, data)
+    for robot, reach_m in zip(ROBOTS, nearness._reaches_m, strict=True):
+        origin_w = data.qpos[robot.root_qpos : robot.root_qpos + 3]
+        for geom in robot.geoms:
+            if MODELS.stepped.geom_type[geom] != mujoco.mjtGeom.mjGEOM_CAPSULE:
+                continue
+            radius_m, half_m, _ = MODELS.stepped.geom_size[geom]
+            for end in (-half_m, half_m):
+                end_w = data.geom_xpos[geom] + end * data.geom_xmat[geom][2::3]
+                assert math.dist(end_w, origin_w) + radius_m <= reach_m
+
+
 @given(
     PLACES,
     st.floats(0.0, 0.8),

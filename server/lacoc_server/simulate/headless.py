@@ -198,7 +198,7 @@ def _follow(
     inputs = next(script)
     while True:
         beat = pass_beat(inputs)
-        for item, outcome in zip(inputs, beat.outcomes, strict=True) if inputs else ():
+        for item, outcome in zip(inputs, beat.outcomes, strict=True):
             if isinstance(item, JoinSeat) and isinstance(outcome, Refusal):
                 raise FileRefused(list(outcome.mistakes))
         yield beat

@@ -84,8 +84,6 @@ class TouchTest:
         self._from, self._qpos = qpos, self._data.qpos
         self._look()
         probes = list(_probes(model, self._data, markers))
-        self._is_near = False
-        """Whether a robot has a pair that may touch."""
         self._robots = [_Outline(model, self._data, qpos, robot, probes) for robot in robots]
 
     def __call__(self, gap_m: float = 0.0) -> Sequence[tuple[int, ...]]:
@@ -96,13 +94,11 @@ class TouchTest:
         """
         room_m, robots = _TOUCH_M + abs(gap_m), self._robots
         gone = [robot for robot in robots if robot.has_gone(room_m)]
-        if gone or self._is_near:
+        if gone or any(robot.near for robot in robots):
             self._look()
-        if gone:
-            for robot in gone:
-                robot.look_around(room_m)
-            self._is_near = any(robot.near for robot in robots)
-        return [robot.touched(gap_m, room_m) if robot.near else () for robot in robots]
+        for robot in gone:
+            robot.look_around(room_m)
+        return [robot.touched(gap_m, room_m) for robot in robots]
 
     def _look(self) -> None:
         """Compute the present positions of all geoms from `qpos`."""
@@ -139,25 +135,22 @@ class _Outline:
             memoryview(data.geom_xmat[:, 2]),
             memoryview(data.geom_xmat[:, 5]),
         )
-        self._at_m: Sequence[float] = (math.nan, math.nan)
-        self._turned: Sequence[float] = (math.nan,) * 4
-        """Quaternion of the body; with `_at_m` the pose for which `near` was found."""
+        self._seen_from: Sequence[float] = [math.nan] * 7
         self._room_m = 0.0
         self.near: list[tuple[_Probe, list[_TouchPair]]] = []
         """All pairs that may touch until the robot `has_gone`, by probe, in their order."""
 
     def has_gone(self, room_m: float) -> bool:
         """Return whether `near` may lack a pair with a distance of at most `room_m`."""
-        now = self._pose.tolist()
-        turned = math.dist(now[3:], self._turned)  # a point at 1 m has moved at most twice as far
-        gone_m = math.dist(now[:2], self._at_m) + 2 * self._arm_m * turned
+        now, then = self._pose.tolist(), self._seen_from
+        turned = math.dist(now[3:], then[3:])  # a point at 1 m has moved at most twice as far
+        gone_m = math.dist(now[:2], then[:2]) + 2 * self._arm_m * turned
         return not gone_m <= _SKIN_M or room_m > self._room_m
 
     def look_around(self, room_m: float) -> None:
         """Find the pairs that are `near`; the positions of bodies must be the present ones."""
-        pose, self._room_m = self._pose.tolist(), room_m
-        here_m, self._turned = pose[:2], pose[3:]
-        self._at_m = here_m
+        self._seen_from, self._room_m = self._pose.tolist(), room_m
+        here_m = self._seen_from[:2]
         limbs = [(self._origins_m[limb.body, :2].tolist(), limb.parts) for limb in self._limbs]
         self.near = []
         for probe in self._probes:
@@ -189,7 +182,7 @@ class _Outline:
         x_m, y_m, axis_x, axis_y = self._x_m, self._y_m, self._axis_x, self._axis_y
         touched = []
         for (marker, probe, probe_x_m, probe_y_m, _), pairs in self.near:
-            for number, (geom, half_m, middle_m2, axis_m2) in enumerate(pairs):
+            for geom, half_m, middle_m2, axis_m2 in pairs:
                 dx_m, dy_m = probe_x_m - x_m[geom], probe_y_m - y_m[geom]
                 if dx_m * dx_m + dy_m * dy_m > middle_m2:
                     continue
@@ -199,8 +192,6 @@ class _Outline:
                         continue
                 if distance_m(model, data, geom, probe, room_m, None) <= gap_m:
                     touched.append(marker)
-                    if number:  # the part that touches now is likely to touch in the next tick
-                        pairs.insert(0, pairs.pop(number))
                     break
         return tuple(touched)
 

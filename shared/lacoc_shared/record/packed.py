@@ -1,8 +1,8 @@
 """The packed file of a finished match: compressed, indexed, with checksums."""
 
 import os
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from mcap.writer import Writer
@@ -103,7 +103,9 @@ class PackedFile:
             files.sync_folder(self._path.parent)
 
     def discard(self) -> None:
-        """Remove the unfinished file; do nothing if the disk does not allow it."""
+        """Remove the file if it has no name yet; do nothing if the disk does not allow it."""
+        if self._has_name:
+            return
         with suppress(OSError):
             self._file.close()
         with suppress(OSError):
@@ -117,11 +119,8 @@ class PackedFile:
         try:
             if error is None:
                 self.name()
-                return
-        except BaseException:
+        finally:
             self.discard()
-            raise
-        self.discard()
 
 
 class PackedWriter(Recorder):
@@ -156,11 +155,9 @@ class PackedWriter(Recorder):
         Raises:
             UserError: if the disk does not take them; then the file is removed.
         """
-        try:
+        with self._room():
             for message in self._waiting:
                 self._file.add(*message)
-        except OSError as error:
-            raise self._no_room(error) from None
         self._waiting.clear()
 
     def end(self) -> None:
@@ -170,10 +167,8 @@ class PackedWriter(Recorder):
             UserError: as `flush`.
         """
         self.flush()
-        try:
+        with self._room():
             self._file.complete()
-        except OSError as error:
-            raise self._no_room(error) from None
 
     def close(self) -> None:
         """End the file, and give it its name when the disk has everything.
@@ -182,10 +177,8 @@ class PackedWriter(Recorder):
             UserError: as `flush`.
         """
         self.end()
-        try:
+        with self._room():
             self._file.name()
-        except OSError as error:
-            raise self._no_room(error) from None
 
     def leave(self) -> None:
         """Remove the file, because the match is not over."""
@@ -196,8 +189,12 @@ class PackedWriter(Recorder):
         if len(self._waiting) >= _MOST_WAITING:
             self.flush()
 
-    def _no_room(self, error: OSError) -> UserError:
-        """Remove the file, which the disk did not take; return what to tell the user."""
-        self._file.discard()
-        why = error.strerror or str(error)
-        return UserError(say("record.no-room", file=self.path.name, why=why))
+    @contextmanager
+    def _room(self) -> Iterator[None]:
+        """Remove the file if the disk does not take what the `with` block writes, and say why."""
+        try:
+            yield
+        except OSError as error:
+            self._file.discard()
+            why = error.strerror or str(error)
+            raise UserError(say("record.no-room", file=self.path.name, why=why)) from None
