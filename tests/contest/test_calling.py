@@ -16,6 +16,7 @@ from lacoc_server.contest.league.timetable.calling import (
     results,
     taken_back,
     wanted,
+    why_recalled,
 )
 from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.words import render, say
@@ -55,6 +56,7 @@ def test_a_game_that_was_moved_goes_back_unless_it_has_begun() -> None:
     (back,) = taken_back(cup.contest, seen, NOW_MS)
     assert isinstance(back, Recalled)
     cup.add(Recalled, pairing=back.pairing, game=back.game, reason=back.reason)
+    assert why_recalled(cup.contest, cup.facts, call.id) == say("recalled.moved")
     again = {one.court: one.pairing for one in calls(cup.contest, seen, NOW_MS, 0)}
     assert again["south"] == call.pairing
     assert again["north"] != call.pairing, "the other court does not wait"
@@ -110,6 +112,10 @@ def test_a_court_that_is_gone_loses_a_game_that_has_not_begun(
     assert bool(list(taken_back(cup.contest, north, NOW_MS + LOST_MS + 1))) == is_lost
     started_ms = NOW_MS + 1  # an office that has just started has not listened long enough
     assert list(taken_back(cup.contest, north, NOW_MS + LOST_MS + 1, started_ms)) == []
+    for back in taken_back(cup.contest, north, NOW_MS + LOST_MS + 1):
+        cup.append(back)
+        silent = say("recalled.silent", seconds=LOST_MS // 1000)
+        assert why_recalled(cup.contest, cup.facts, call.id) == silent
 
 
 def test_a_game_that_is_not_needed_comes_back() -> None:
@@ -118,9 +124,18 @@ def test_a_game_that_is_not_needed_comes_back() -> None:
     call = called(cup)
     seen = {"north": SeenCourt(NOW_MS, call.id)}
     assert not list(taken_back(cup.contest, seen, NOW_MS))
-    cup.add(Withdrawn, team=call.teams[0])
+    assert why_recalled(cup.contest, cup.facts, call.id) is None
+    others = {*(team.name for team in cup.contest.teams)} - {*call.teams}
+    cup.add(Withdrawn, team=min(others), reason="ill")
+    assert why_recalled(cup.contest, cup.facts, call.id) is None, "that is about another game"
+    cup.add(Withdrawn, team=call.teams[0], reason="a broken leg")
     (back,) = taken_back(cup.contest, seen, NOW_MS)
     assert isinstance(back, Recalled)
+    cup.append(back)
+    what = say("decided.withdrawn", team=call.teams[0])
+    said = say("recalled.decided", what=what, reason="a broken leg")
+    assert why_recalled(cup.contest, cup.facts, call.id) == said
+    assert why_recalled(cup.contest, cup.facts, "no such call") is None
     begun = {"north": SeenCourt(NOW_MS, call.id, begun=True)}
     assert not list(taken_back(cup.contest, begun, NOW_MS))
 

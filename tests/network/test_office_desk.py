@@ -204,6 +204,18 @@ def test_a_wrong_token_withdraws_nothing() -> None:
     assert desk.wanted is None
 
 
+def test_the_reason_for_a_withdrawal_is_a_phrase_that_pages_can_say() -> None:
+    """The reason of the office is kept for the court; one that no page could say is refused."""
+    desk = Desk()
+    desk.hold("c1", Phase.READY)
+    wrong = encode(Withdraw(token=OFFICE, call="c1", why=Phrase("no.such-phrase")))
+    assert desk.refusal("withdraw", wrong).code == "refused.bad-request"
+    assert desk.wanted is None
+    why = say("recalled.moved")
+    desk.later("withdraw", encode(Withdraw(token=OFFICE, call="c1", why=why)))()
+    assert desk.wanted == WantedMatch(None, why=why)
+
+
 def test_an_official_match_is_closed_if_the_office_says_so() -> None:
     """The office that has the result closes the match, so that its record ends."""
     desk = Desk()

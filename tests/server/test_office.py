@@ -217,13 +217,15 @@ def test_a_match_that_no_longer_counts_ends_in_play(waiting: Office, folder: Pat
     waiting.plays("Ants", "Bees", until=lambda: waiting.link.phase is Phase.PLAYING)
     sheet = waiting.link.sheet
     assert sheet is not None
-    assert waiting.answer(lambda: waiting.link.withdraw(call, begun=True)) == Done()
+    why = say("recalled.moved")
+    assert waiting.answer(lambda: waiting.link.withdraw(call, begun=True, why=why)) == Done()
     waiting.until(lambda: waiting.link.call == "")
     played = record(folder, sheet.match_id)
     assert played.result is not None
     assert played.result.official == "void"
     decided = [event.data["reason"] for event in played.events if event.kind == "decision"]
-    assert decided == [{"code": "reason.office-takes-match"}]
+    moved = {"code": "recalled.moved"}
+    assert decided == [{"code": "reason.office-takes-match", "values": {"why": moved}}]
 
 
 def test_a_void_match_has_a_result_too(waiting: Office) -> None:

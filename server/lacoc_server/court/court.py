@@ -313,7 +313,8 @@ class Court:
         match, before = self._journal.match, self._trouble
         wanted = self._wanted
         if wanted is not None and not match.is_over and (wanted.ends or not match.has_begun):
-            return [Decide(THE_COURT, say("reason.office-takes-match"), Abort())]
+            reason = say("reason.office-takes-match", why=wanted.why)
+            return [Decide(THE_COURT, reason, Abort())]
         self._trouble = now = self._journal.trouble
         why = before or now
         if before != now and why is not None and match.phase in IN_PLAY:

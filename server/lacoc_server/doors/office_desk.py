@@ -33,7 +33,8 @@ from lacoc_shared.mistakes import printable
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, faults, say
 
-_FIXTURE_BYTES = 2000  # of the encoded phrase; every page gets it
+_PHRASE_BYTES = 2000
+"""Most bytes of an encoded phrase of the office; every page gets it."""
 _REMEMBERED = 256
 
 _BEFORE = frozenset({Phase.CREATED, Phase.LOBBY, Phase.READY})
@@ -63,6 +64,8 @@ class WantedMatch(NamedTuple, Generic[T]):
     """The prepared match; None: the court shall wait."""
     ends: bool = False
     """Whether to end a match that has begun; if False, only an unbegun match is replaced."""
+    why: Phrase | None = None
+    """Why the office takes the present match away; None: it gave no reason."""
 
 
 class _OfficeToken(AnyToken):
@@ -180,6 +183,8 @@ class OfficeDesk(Generic[T]):
         return None
 
     def _withdraw(self, request: Withdraw) -> Answer:
+        if request.why is not None and (error := _wrong_phrase(request.why)):
+            return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=error))
         return self._withdrawn(request) or partial(self._withdrawn, request)
 
     def _withdrawn(self, request: Withdraw) -> Done | Refusal | None:
@@ -190,7 +195,7 @@ class OfficeDesk(Generic[T]):
             return self._busy()
         if self._phase is Phase.OFFICIAL and not request.official:
             return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
-        self.wanted = WantedMatch(None, ends=request.begun)
+        self.wanted = WantedMatch(None, ends=request.begun, why=request.why)
         return None
 
     @property
@@ -202,11 +207,9 @@ class OfficeDesk(Generic[T]):
 
     def _why_not(self, assign: Assign) -> Phrase | None:
         """Say what is wrong with the form of an assignment; None if nothing is."""
-        if len(encode(assign.fixture)) > _FIXTURE_BYTES:
-            return say("refused.bad-fixture", error=assign.fixture.code[:40])
-        found = [] if assign.fixture.code.startswith("fixture.") else [assign.fixture.code[:40]]
-        if found := found or faults(assign.fixture):
-            return say("refused.bad-fixture", error=found[0][:200])
+        is_other = not assign.fixture.code.startswith("fixture.")
+        if error := assign.fixture.code[:40] if is_other else _wrong_phrase(assign.fixture):
+            return say("refused.bad-fixture", error=error)
         seats = [seat.id for seat in assign.seats]
         if sorted(seats) != sorted(self._seats):
             return say("refused.assigned-seats", found=seats[:20], seats=self._seats)
@@ -219,6 +222,13 @@ class OfficeDesk(Generic[T]):
     def _refuse(self, why: Why, said: Phrase) -> Refusal:
         self.refused[why.value] += 1
         return Refusal(said)
+
+
+def _wrong_phrase(phrase: Phrase) -> str:
+    """Return what is wrong with a phrase of the office; "" if nothing is."""
+    if len(encode(phrase)) > _PHRASE_BYTES:
+        return phrase.code[:40]
+    return next((fault[:200] for fault in faults(phrase)), "")
 
 
 def _wrong_name(seat: AssignedSeat) -> Phrase | None:

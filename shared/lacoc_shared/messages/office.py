@@ -153,6 +153,8 @@ class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=T
     """Whether to close the match even if it has begun; if False, the court then refuses."""
     official: bool = False
     """Whether to close the match even if its result is official, so that its record ends."""
+    why: Phrase | None = None
+    """Why, in words; the court adds it to its decision. None: no reason is known."""
 
 
 class Copy(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -44,7 +44,7 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
         Decided(
             fact=fact.id,
             at_ms=fact.at_ms,
-            what=_what(contest, fact),
+            what=in_words(contest, fact),
             pairing=getattr(fact, "pairing", ""),
             stage=fact.stage if isinstance(fact, Drawn) else "",
             reason=fact.reason,
@@ -54,7 +54,8 @@ def decided(contest: Contest) -> tuple[Decided, ...]:
     )
 
 
-def _what(contest: Contest, fact: OfDecision) -> Phrase:
+def in_words(contest: Contest, fact: OfDecision) -> Phrase:
+    """Put a decision into words, without its reason."""
     match fact:
         case Entered():
             return say("decided.entered-late", team=fact.team)

@@ -191,6 +191,12 @@ class Called(Fact, frozen=True, kw_only=True, tag="called"):
     court: Name
 
 
+MOVED = "moved"
+"""Reason of `Recalled`: the match was moved to another court, or to a later time."""
+COURT_LOST = "court lost"
+"""Reason of `Recalled`: the court was silent for too long."""
+
+
 class Recalled(Fact, frozen=True, kw_only=True, tag="recalled"):
     """A called game is taken away from its court without a result."""
 

@@ -168,13 +168,16 @@ class CourtLink:
         )
         return self._ask("assign", request, Done)
 
-    def withdraw(self, call: str, *, begun: bool = False, official: bool = False) -> Asked[Done]:
+    def withdraw(
+        self, call: str, *, begun: bool = False, official: bool = False, why: Phrase | None = None
+    ) -> Asked[Done]:
         """Tell the court to close an assigned match.
 
         Args:
             call: id of its call.
             begun: True: close it even if it has begun; False: the court refuses this.
             official: True: close it even if its result is official; False: the court refuses this.
+            why: why, for those who play and watch; None: no reason is known.
         """
         request = Withdraw(
             token=self._token,
@@ -182,6 +185,7 @@ class CourtLink:
             call=call,
             begun=begun,
             official=official,
+            why=why,
         )
         return self._ask("withdraw", request, Done)
 

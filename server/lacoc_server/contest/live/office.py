@@ -23,6 +23,7 @@ from lacoc_server.contest.league.timetable.calling import (
     results,
     taken_back,
     wanted,
+    why_recalled,
 )
 from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
 from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
@@ -254,7 +255,8 @@ class Office:
             )
             is_open = begun or link.phase in (Phase.LOBBY, Phase.READY)
             if call and is_open and not is_fine and self._may_ask(call, now_ms):
-                self._asked[call] = link.withdraw(call, begun=begun)
+                why = why_recalled(self.contest, self._facts, call)
+                self._asked[call] = link.withdraw(call, begun=begun, why=why)
 
     def _fill(self, now_ms: int) -> None:
         """Give open matches to the courts that have no game."""

@@ -1,12 +1,26 @@
 """Which game goes to which court, when a game is taken back, and how it ended; pure."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from lacoc_server.contest.league.contest import Contest
-from lacoc_server.contest.league.facts import AnyFact, Called, Outcome, Played, Recalled, new
+from lacoc_server.contest.league.decided import in_words
+from lacoc_server.contest.league.facts import (
+    COURT_LOST,
+    MOVED,
+    AnyFact,
+    Called,
+    Drawn,
+    OfDecision,
+    Outcome,
+    Played,
+    Recalled,
+    Undrawn,
+    new,
+    stage_of,
+)
 from lacoc_server.contest.league.timetable.schedule import assign
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 LOST_MS = 20_000
 """A court that was not heard for this long loses its game [ms]."""
@@ -107,9 +121,44 @@ def taken_back(
         elif move is not None and (
             move.court not in ("", call.court) or move.not_before_ms > now_ms
         ):
-            yield new(Recalled, pairing=call.pairing, game=call.game, reason="moved")
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason=MOVED)
         elif now_ms - max(court.heard_ms, call.at_ms, since_ms) > LOST_MS:
-            yield new(Recalled, pairing=call.pairing, game=call.game, reason="court lost")
+            yield new(Recalled, pairing=call.pairing, game=call.game, reason=COURT_LOST)
+
+
+def why_recalled(contest: Contest, facts: Sequence[AnyFact], call: str) -> Phrase | None:
+    """Say why a called game was taken away from its court; None: no reason is known.
+
+    Args:
+        contest: the contest.
+        facts: its facts, in their order.
+        call: id of the call.
+    """
+    called = next((one for one in facts if isinstance(one, Called) and one.id == call), None)
+    if called is None:
+        return None
+    game = called.pairing, called.game
+    backs = [f for f in facts if isinstance(f, Recalled) and (f.pairing, f.game) == game]
+    reason = backs[-1].reason if backs else ""
+    if reason == MOVED:
+        return say("recalled.moved")
+    if reason == COURT_LOST:
+        return say("recalled.silent", seconds=LOST_MS // 1000)
+    since = (fact for fact in contest.decisions if fact.at_ms >= called.at_ms)
+    about = [fact for fact in since if _is_about(fact, called)]
+    if not about:
+        return None
+    return say(
+        "recalled.decided", what=in_words(contest, about[-1]), reason=about[-1].reason or None
+    )
+
+
+def _is_about(fact: OfDecision, called: Called) -> bool:
+    """Return whether a decision is about a game's match, its stage, or one of its teams."""
+    if isinstance(fact, Drawn | Undrawn):
+        return fact.stage == stage_of(called.pairing)
+    pairing, team = getattr(fact, "pairing", ""), getattr(fact, "team", "")
+    return pairing == called.pairing or team in called.teams
 
 
 def calls(
