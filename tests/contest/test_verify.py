@@ -537,6 +537,14 @@ def test_facts_that_are_nested_too_deep_are_refused(tmp_path: Path) -> None:
             read(tmp_path)
 
 
+@pytest.mark.parametrize("name", [".", "contest.toml", "nowhere"])
+def test_a_path_without_a_published_contest_is_told_what_to_give(tmp_path: Path, name: str) -> None:
+    """A contest file in place of a published folder is told what `verify` needs."""
+    (tmp_path / "contest.toml").write_text('[contest]\nname = "LACOC"\n')
+    with pytest.raises(UserError, match=r"no published contest .*lacoc contest publish"):
+        read(tmp_path / name)
+
+
 def _double(text: str) -> str:
     return text.replace('"outcome":', '"outcome":"void","outcome":', 1)
 

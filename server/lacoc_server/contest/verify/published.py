@@ -38,12 +38,14 @@ def read(path: Path) -> tuple[AnyFact, ...]:
     """Read the facts of a published folder, or a file of facts.
 
     Raises:
-        UserError: if the file does not exist, or can't be read.
+        UserError: if the file does not exist, or has no facts that can be read; the message says
+            what to give.
     """
-    if path.is_dir():
-        return league_facts.decode(regular.read(path, FACTS, most_bytes=_MOST_BYTES))
-    file = path.resolve()  # the user named it, so it may be a link
-    return league_facts.decode(regular.read(file.parent, file.name, most_bytes=_MOST_BYTES))
+    folder, name = (path, FACTS) if path.is_dir() else (path.resolve().parent, path.resolve().name)
+    try:  # the file that the user named may be a link, one in a published folder may not
+        return league_facts.decode(regular.read(folder, name, most_bytes=_MOST_BYTES))
+    except UserError as error:
+        raise UserError(say("verify.no-facts", path=text_of(path), why=error.said[0])) from None
 
 
 def check_published(folder: Path, facts: tuple[AnyFact, ...]) -> Iterator[Phrase]:
