@@ -372,7 +372,10 @@ def test_a_class_that_can_not_be_opened_leaves_no_folder(
 
 @pytest.mark.long
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:
-    """An open class can't be exported or forgotten. Once it is closed, forget leaves no file."""
+    """An open class can't be exported or forgotten. Once it is closed, forget leaves no file.
+
+    An export keeps the files of an earlier one.
+    """
     room = ClassRoom(tmp_path)
     student = room.student("Kim")
     edit(student, edit(student, student.sample(), 1.0), 2.0)
@@ -381,11 +384,13 @@ def test_the_commands_export_and_forget(tmp_path: Path) -> None:
         assert done.returncode == 2
         assert "lacoc-class.sqlite" in done.stderr
     room.close()
+    (tmp_path / "evidence.csv").write_text("what the teacher wrote into an earlier export")
     done = run_lacoc("class", "export", str(tmp_path))
     assert done.returncode == 0, done.stderr
+    assert "teacher" in (tmp_path / "evidence.1.csv").read_text()
     assert b"Kim" in (tmp_path / "evidence.csv").read_bytes()
     assert zipfile.is_zipfile(tmp_path / "tables.zip")
-    (tmp_path / "evidence.csv").unlink()
-    (tmp_path / "tables.zip").unlink()
+    for name in ("evidence.csv", "evidence.1.csv", "tables.zip"):
+        (tmp_path / name).unlink()
     assert run_lacoc("class", "forget", str(tmp_path), "--yes").returncode == 0
     assert list(tmp_path.iterdir()) == []

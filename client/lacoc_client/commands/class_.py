@@ -133,7 +133,7 @@ def export_command(
     place = out or folder
     keep.make_folder(place)
     for name, data in files.items():
-        (place / name).write_bytes(data)
+        keep.save(place / name, data)
         screen.show(say("class.written", file=str(place / name)))
 
 

@@ -73,7 +73,7 @@ def web_command(
     browser: Annotated[
         bool,
         typer.Option(
-            "--open/--no-open", help="Open /watch in the browser; with an office, /contest."
+            "--open/--no-open", help="Open /watch in the browser; /contest if there is a contest."
         ),
     ] = False,
     office: Annotated[

@@ -36,7 +36,7 @@ class Seat:
     next match.
     """
     idle: bool = True
-    """True until a key has moved the robot from the start place where it was put; meanwhile nothing
+    """True from when the robot is put on a start place until a digit is pressed; meanwhile nothing
     that happens to it scores (rules 4).
     """
     drive: Drive | None = None
