@@ -86,7 +86,10 @@ class KeySpace:
 
     @property
     def health(self) -> str:
-        """Key expression of health: the court sends it twice a second; only the newest matters."""
+        """Key expression of health, of which only the newest matters.
+
+        The court sends it twice a second, and at once when `gains` changes.
+        """
         return f"{self.root}/health"
 
     @property

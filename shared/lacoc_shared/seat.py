@@ -14,7 +14,7 @@ Pattern = Literal["plain", "stripes", "dots"]
 
 
 class Phase(IntEnum):
-    """The phases of a match (rules 4)."""
+    """The phases of a match, in their order; rules 4 tells what happens in them."""
 
     CREATED = 0
     LOBBY = 1

@@ -178,7 +178,7 @@ def simulate_command(
 
 
 def _teams(names: Mapping[str, str]) -> dict[str, str]:
-    """Return the name of each player for the printed tables.
+    """Return the name under which each player plays and is listed.
 
     It is the name of the player's team. If two players have the same, it is what the command line
     has for the player.

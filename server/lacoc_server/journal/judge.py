@@ -239,9 +239,11 @@ class Judge:
         return differs
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
-        """Begin a new section of the match; return physics that answers the match from the record.
+        """Begin the section that starts with newly built robots, without a snapshot.
 
-        Without robots there is no section, and an empty world is returned: nothing moves in it.
+        Returns:
+            Physics that answers the match from the record. Without robots there is no section, and
+            the world that is returned has only the field, in which nothing moves.
         """
         world = World(arena, entries)
         scene, model_hash = self._other_model(world)

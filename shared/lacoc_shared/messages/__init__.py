@@ -529,7 +529,7 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     """Hash of the newest sheet: 8 bytes of BLAKE2. A client with another sheet requests this
     one."""
     gains: tuple[Gains, ...] = ()
-    """For each seat what its robot would gain next; empty while no robot stands on the field."""
+    """For each seat what its robot would gain next; empty before READY and after play."""
     moves: tuple[tuple[str, ...], ...] = ()
     """For each seat, what its keys of level B do: a name of `move.*` for each key from 0 on, or ""
     if it is not known yet."""

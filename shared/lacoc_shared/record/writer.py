@@ -2,8 +2,8 @@
 
 The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message is one system
 call. `mcap.writer` would put a buffer before the file. A kill would lose this buffer, and filling
-it takes longer than writing to the file. So this module itself packs the kind of MCAP record that
-is written 50 times a second, and uses `mcap.records` for the other kinds only.
+it takes longer than writing to the file. So this module itself packs the messages after the
+header, and uses `mcap.records` for all else.
 """
 
 import os

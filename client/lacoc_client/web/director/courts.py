@@ -44,10 +44,7 @@ class CourtNow(NamedTuple):
 
     @property
     def is_played(self) -> bool:
-        """Whether the match has begun and is not over.
-
-        It may be halted or count down after a halt.
-        """
+        """Whether the match is in play, halted, or in a countdown after the clock has run."""
         resumes = self.phase is Phase.COUNTDOWN and self.has_begun
         return resumes or self.phase in (Phase.PLAYING, Phase.HALTED)
 

@@ -77,9 +77,9 @@ class Director:
             now_s: the time, by a clock that never goes back [s].
             courts: every court that can be shown; a court that is missing has vanished.
 
-        Returns: The court on air. The choice uses the courts as they were `ahead_s` ago, which is
-        what pages show; in the first `ahead_s` seconds, as they were at the first look. None: there
-        was no court at the shown time or before.
+        Returns: The court on air. It is chosen for the time that pages show, `ahead_s` ago (in the
+        first `ahead_s` seconds: for the first look), and the choice knows what has happened since.
+        None: there was no court at the shown time or before.
         """
         self._see(now_s, courts)
         shown_s = now_s - self._ahead_s

@@ -1,4 +1,7 @@
-"""Reads a page's requests one after the other, and slows down a page that sends too many."""
+"""Reads a page's requests in their order, and slows down a page that sends too many.
+
+A request that takes long is answered later, while the next ones are read.
+"""
 
 import asyncio
 import time

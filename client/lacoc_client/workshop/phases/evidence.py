@@ -84,7 +84,10 @@ class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
 
 
 class Guessed(_EvidenceKind, frozen=True, kw_only=True, tag="guessed"):
-    """The student guessed what a change of the table would do, and then saw it."""
+    """The student guessed where a foot would go, or how the robot would walk, and then saw it.
+
+    The guess was about an edit, or about the next trial.
+    """
 
     about: Literal["foot", "pace", "way"]
     """What was guessed: where a foot goes (`facts.FootWay`), whether the robot becomes faster

@@ -52,7 +52,10 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def may_return(self) -> bool:
-        """Whether the team may enter again while entries are open."""
+        """Whether the team has left in a way that lets it enter again.
+
+        Whoever asks checks that entries are open.
+        """
         return self.withdrawn and not self.disqualified
 
 

@@ -57,7 +57,9 @@ class RetryPause:
 
 
 class Attempts(Generic[T]):
-    """Calls a function on another thread, again and again until it returns a result.
+    """Calls a function on another thread, and calls it again if it gives no result.
+
+    An attempt begins only when somebody calls `take`. A `take` after a result begins anew.
 
     Args:
         do: returns the result, or None if it has to be tried again.

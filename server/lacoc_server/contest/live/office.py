@@ -160,7 +160,10 @@ class Office:
         self.known = OfficeKnowledge(seen, self._teller.pace, dict(self.held))
 
     def _may_draw(self, now_ms: int) -> bool:
-        """Return whether the office may draw: entries are closed, or it is time to close them."""
+        """Return whether the office may draw.
+
+        It may if entries are closed, or if it is time to close them and at least two teams are in.
+        """
         if self.contest.closed:
             return True
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms

@@ -294,10 +294,11 @@ class History:
         self._count += 1
 
     def _forget(self) -> None:
-        """Forget the ticks that the rules have judged: no event in them can be taken back.
+        """Forget the ticks that the rules have judged.
 
-        Judging again will begin with the present state. So memory does not grow in a practice,
-        which has no such events and may go on for days.
+        It is called only when they have no event that can be taken back. Judging again will begin
+        with the present state. So memory does not grow in a practice, which has no such events and
+        may go on for days.
         """
         self._first, self._first_over = self.state, self.over
         if self._count:

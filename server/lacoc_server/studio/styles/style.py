@@ -1,8 +1,9 @@
 """Changes a whole table in a visible way: a higher body, longer steps, a lean.
 
-Each way (`Way`) moves the feet of all postures together, seen from the body. The angles that put
-the feet there are found iteratively, beginning with those of the table, so a foot that does not
-move keeps its angles. The unit is a step: one step of each way is about equally visible.
+Each way (`Way`) changes, in all postures at once, where the feet are relative to the body. How far
+a foot moves may differ from posture to posture. The angles that put the feet there are found
+iteratively, beginning with those of the table, so a foot that does not move keeps its angles. The
+unit is a step: one step of each way is about equally visible.
 """
 
 import math

@@ -25,7 +25,10 @@ class _Apart(NamedTuple):
     """Pairs of teams that met in the stage before; empty: they are not kept apart."""
 
     def clash(self, order: tuple[str, ...]) -> Pairs:
-        """Return the pairs of teams that would meet first in this order, but should not."""
+        """Return the pairs that this order makes certain to meet, but that should be kept apart.
+
+        They would meet in a bracket's first round, or in one group.
+        """
         pairs = ((order[one], order[other]) for one, other in self.meet)
         return tuple(_clashing(pairs, dict(self.clubs), self.met))
 
