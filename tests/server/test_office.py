@@ -31,7 +31,7 @@ from lacoc_server.journal.replay import verify
 from lacoc_server.journal.verdict import Verdict, VerdictKind
 from lacoc_shared.command.child import NOT_AGAIN
 from lacoc_shared.decisions import Abort, Declare, Halt, Next, Official, Start
-from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, KeySpace
+from lacoc_shared.keyspace import ASSIGN_MAX_BYTES, COMMAND_MAX_BYTES, DECISION_MAX_BYTES, KeySpace
 from lacoc_shared.messages import Done, Refusal, SentFile
 from lacoc_shared.messages.office import EARLIER_OFFICE, WAITING, Whereabouts
 from lacoc_shared.mistakes import UserError
@@ -345,9 +345,14 @@ def test_strangers_are_refused_and_counted(waiting: Office) -> None:
     assert stranger.withdraw(new_call()).wait() == answer
     assert stranger.copy("20260101-100000-main-001", {}).wait() == answer
     assert stranger.retire().wait() == answer
-    session, key = waiting.session, waiting.link._keys.office("assign")
-    with pytest.raises(NoReply):
-        session.ask(key, bytes(ASSIGN_MAX_BYTES + 1), 0.5)
+    session, keys = waiting.session, waiting.link._keys
+    for key, most in (
+        (keys.office("assign"), ASSIGN_MAX_BYTES),
+        (keys.request("left", "try"), COMMAND_MAX_BYTES),
+        (keys.outlook, DECISION_MAX_BYTES),
+    ):
+        with pytest.raises(NoReply):
+            session.ask(key, bytes(most + 1), 0.5)
     large = {"token": "x", "more": bytes(ASSIGN_MAX_BYTES - 100)}
     answer = stranger._ask("assign", large, Done).wait()  # type: ignore[arg-type]
     assert answer == Refusal(say("refused.no-office-token"))

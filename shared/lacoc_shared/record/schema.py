@@ -120,7 +120,8 @@ class Result(msgspec.Struct, frozen=True, kw_only=True):
     scores: tuple[int, ...]
     """Points by seat, with the referee's adjustments."""
     computed: str
-    """Id of the seat that wins by the rules, "draw", or "" if the match never reached its end."""
+    """Id of the seat that wins by the rules, or "draw", also in a match that was aborted before
+    play; "" before the end."""
     official: str
     """Id of the official winner's seat, or "draw"; "void" for a void match; "" before the phase
     OFFICIAL."""
