@@ -22,6 +22,7 @@ from lacoc_server.contest.league.facts import (
     Undrawn,
     Withdrawn,
 )
+from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.foreseen import foreseen
@@ -346,6 +347,29 @@ def test_a_team_is_told_who_plays_in_its_place() -> None:
     assert where(cup, {})[cup.names[0]].said == said
 
 
+def test_a_team_whose_opponent_leaves_is_told_that_it_wins() -> None:
+    """Whose opponent withdraws reads so, with the match and the reason; other teams read nothing.
+
+    In a round robin a team that leaves has a match with each other one; each reads of its own.
+    """
+    for fact in (Withdrawn, Disqualified):
+        cup = Cup(teams=8, groups=2)
+        first = cup.contest.stages[0].matches[0]
+        here, away = first.teams
+        assert here
+        assert away
+        cup.add(fact, team=away, reason="a broken leg")
+        found = where(cup, {})
+        news = found[here].news
+        assert news is not None
+        assert faults(news) == []
+        said = render(news)
+        assert said.startswith(f"{render(named(cup.contest, first.pairing.id))}: {away} ")
+        assert said.endswith("You win this match. Reason: a broken leg")
+        group = {t for m in cup.contest.stages[0].matches if away in m.teams for t in m.teams}
+        assert {name for name, there in found.items() if there.news} == group - {away}
+
+
 def test_teams_are_told_what_was_decided_about_their_match() -> None:
     """Whose opponent did not come reads why the match is won, until the team plays again."""
     cup = Cup()
@@ -365,7 +389,11 @@ def test_teams_are_told_what_was_decided_about_their_match() -> None:
     cup.add(Entered, team="Late", files="f")
     cup.add(Substituted, team=absent, substitute="Late", reason="a broken leg")
     found = where(cup, {})
-    assert (found["Late"].news, found[here].news) == (None, None), "the match is open again"
+    assert found["Late"].news is None
+    news = found[here].news
+    assert news is not None
+    assert f"Late takes the place of {absent}. Reason: a broken leg" in render(news)
+    assert "You win" not in render(news), "the match is open again"
     later = next(match for match in cup.contest.stages[0].matches[1:] if here in match.teams)
     assert later.next_seats is not None
     cup.add(NoShow, pairing=first.pairing.id, team="Late")

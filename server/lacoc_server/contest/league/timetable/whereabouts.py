@@ -14,11 +14,12 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from lacoc_server.contest.league.contest import Contest, StageView
-from lacoc_server.contest.league.decided import decided
+from lacoc_server.contest.league.decided import in_words
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Disqualified,
+    OfDecision,
     Planned,
     Played,
     Substituted,
@@ -26,7 +27,7 @@ from lacoc_server.contest.league.facts import (
     Withdrawn,
     stage_of,
 )
-from lacoc_server.contest.league.fixture import fixture
+from lacoc_server.contest.league.fixture import fixture, named
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.pairing import LoserOf, WinnerOf
 from lacoc_server.contest.league.timetable.calling import SeenCourt, absent, present
@@ -155,18 +156,40 @@ def _news(contest: Contest) -> dict[str, Phrase]:
 
     A decision that has no effect is left out, for example about a team that was replaced since.
     """
-    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    matches = [match for view in contest.stages for match in view.matches]
     unused = {one.fact for one in contest.unused}
     news: dict[str, Phrase] = {}
-    for one in decided(contest):
-        if one.fact in unused or one.pairing not in matches:
-            continue
-        match = matches[one.pairing]
-        for team in match.teams:
-            if team and one.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
-                wins = say("team.wins") if team == match.winner else None
-                news[team] = say("team.news", what=one.what, reason=one.reason or None, wins=wins)
+    for fact in contest.decisions:
+        told = [] if fact.id in unused else [(one, _concerned(fact, one)) for one in matches]
+        for match, teams in told:
+            for team in teams:
+                if fact.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
+                    wins = say("team.wins") if team == match.winner else None
+                    what = _about(contest, fact, match)
+                    news[team] = say("team.news", what=what, reason=fact.reason or None, wins=wins)
     return news
+
+
+def _concerned(fact: OfDecision, match: ContestMatch) -> list[str]:
+    """Return the teams that a decision gives another match, or another result of this match.
+
+    A team that itself has left, or has come as a substitute, is told so in other words.
+    """
+    teams = [team for team in match.teams if team]
+    match fact:
+        case Withdrawn() | Disqualified() if fact.team in teams and match.how == "walkover":
+            return [team for team in teams if team == match.winner]
+        case Substituted() if fact.substitute in teams and not match.decided:
+            return [team for team in teams if team != fact.substitute]
+    return teams if getattr(fact, "pairing", "") == match.pairing.id else []
+
+
+def _about(contest: Contest, fact: OfDecision, match: ContestMatch) -> Phrase:
+    """Put a decision that concerns a match into words that name the match."""
+    what = in_words(contest, fact)
+    if getattr(fact, "pairing", ""):
+        return what
+    return say("decided.changes", match=named(contest, match.pairing.id), what=what)
 
 
 def _called(contest: Contest, team: str, call: Called, courts: SeenCourts) -> Whereabouts:
