@@ -9,12 +9,17 @@ from lacoc_server.contest.league.facts import (
     Called,
     Closed,
     Drawn,
+    Moved,
     NoShow,
+    Paused,
     Planned,
     Played,
     Recalled,
+    Shifted,
+    Unshifted,
 )
 from lacoc_server.contest.league.timetable.calling import SeenCourt
+from lacoc_server.contest.league.timetable.steered import MINUTE_MS
 from lacoc_server.contest.league.timetable.ticker import Ticker
 from lacoc_server.contest.league.timetable.whereabouts import ContestPace, OfficeKnowledge
 from lacoc_shared.words import Phrase, render, say
@@ -80,6 +85,22 @@ def test_a_decision_is_told_with_its_reason_and_who_made_it() -> None:
     event.add(NoShow, pairing="cup:w1.1", team=TEAMS[0], reason="not seen", by="Kubota")
     assert terminal.lines()[0] == ("Decided by Kubota: Final: t001 did not come. Reason: not seen")
     assert "Decided" not in "".join(terminal.lines())
+
+
+def test_what_steers_the_day_is_told_once() -> None:
+    """A pause, a shift and a move have a line each, with who made it; a shift back says by what."""
+    cup = Cup()
+    terminal = Terminal(cup)
+    terminal.lines()
+    cup.add(Paused, by="Kubota")
+    assert terminal.lines()[0].startswith("Kubota: Paused: no game is called.")
+    shift = cup.add(Shifted, by_ms=15 * MINUTE_MS)
+    assert terminal.lines() == ["All that is to come is later by 15 minutes."]
+    cup.add(Unshifted, shift=shift.id)
+    assert terminal.lines()[0].startswith("The 15 minutes are taken back")
+    cup.add(Moved, pairing="cup:a1.1", court="red")
+    assert terminal.lines()[0].endswith("is moved to court red.")
+    assert terminal.lines() == []
 
 
 def test_a_draw_that_waits_is_told() -> None:

@@ -11,7 +11,7 @@ from waiting import LIMIT_S, until
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.live import venue
-from lacoc_shared.words import Phrase, render
+from lacoc_shared.words import Phrase, render, say
 
 COURT = """
 [court.red]
@@ -55,7 +55,9 @@ def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | N
         except OSError:
             return False
 
-    with venue.pages(ContestFolder(file), tmp_path, listen, False, "tcp/127.0.0.1:1") as url:
+    told: list[Phrase] = []
+    where = ContestFolder(file)
+    with venue.pages(where, tmp_path, listen, False, "tcp/127.0.0.1:1", told.append) as url:
         assert is_there(url)
         pages = next(
             one
@@ -65,3 +67,4 @@ def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | N
         pages.kill()
         until(lambda: not pages.is_running() or pages.status() == psutil.STATUS_ZOMBIE)
         until(lambda: is_there(url))
+        assert told == [say("child.again", what=say("child.gateway"))]

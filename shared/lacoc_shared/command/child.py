@@ -136,7 +136,11 @@ def child(words: list[str], folder: Path, what: Phrase) -> Iterator[dict[str, An
 
 @contextmanager
 def kept_child(
-    words: list[str], folder: Path, what: Phrase, again: Callable[[dict[str, Any]], list[str]]
+    words: list[str],
+    folder: Path,
+    what: Phrase,
+    again: Callable[[dict[str, Any]], list[str]],
+    tell: Callable[[Phrase], None] | None = None,
 ) -> Iterator[dict[str, Any]]:
     """Run a `lacoc` command as `child` does, and start it again whenever it ends.
 
@@ -148,6 +152,7 @@ def kept_child(
         folder: folder for the files with the process's output.
         what: name of the process for messages (`child.*`), such as "The studio".
         again: takes the message of the first start, and returns the words for all later starts.
+        tell: called, from another thread, whenever the process is started again; None: nothing is.
 
     Raises:
         UserError: if the process does not become ready at first.
@@ -160,6 +165,8 @@ def kept_child(
         while not ending.wait(_AGAIN_S) and not process.ended_for_good:
             if process.ended:
                 process = Child(words, folder, what)
+                if tell is not None:
+                    tell(say("child.again", what=what))
 
     with ExitStack() as stack:
         stack.callback(lambda: process.close())

@@ -93,7 +93,8 @@ def shift(
     """Make all that is to come later: no game is called for so long, and all set times move."""
 
     def shifted(_: "Contest") -> "Sequence[AnyFact]":
-        from lacoc_server.contest.acts.steering import MINUTE_MS, shifting
+        from lacoc_server.contest.acts.steering import shifting
+        from lacoc_server.contest.league.timetable.steered import MINUTE_MS
 
         return [shifting(minutes * MINUTE_MS, reason)]
 
@@ -216,11 +217,12 @@ def _steer(
     Raises:
         UserError: if `act` refuses, or the facts can't be written.
     """
-    from lacoc_server.contest.acts import deciding, steering
+    from lacoc_server.contest.acts import deciding
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.formats.installed import FORMATS
+    from lacoc_server.contest.league.timetable.steered import steered
 
     with FactStore(ContestFolder(file).facts, by) as store:
         facts = store.facts()
@@ -233,7 +235,7 @@ def _steer(
             return more if newest == facts else act(compute(newest, FORMATS))
 
         store.decide(decision)
-        screen.show(steering.done(now, more[-1]))
+        screen.show(steered(now, more[-1]))
 
 
 def _ms_of(clock: str) -> int:

@@ -8,6 +8,7 @@ from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, new
+from lacoc_server.contest.league.timetable.steered import steered
 from lacoc_shared.messages.desk import (
     Announce,
     Approve,
@@ -202,7 +203,7 @@ def steer(
 
     before = book.contest
     book.store.decide(lambda facts: [act(book.contest_of(facts))])
-    return Said(said=(steering.done(before, act(before)),))
+    return Said(said=(steered(before, act(before)),))
 
 
 def staff(book: Book, asked: Staff) -> Said:

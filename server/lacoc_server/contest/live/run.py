@@ -162,7 +162,7 @@ def play_live(
             stack.enter_context(DeskService(door.judge, standby.listen))
         # Courts and pages take some seconds each, so all of them open at the same time.
         starting = {name: run_here(name) for name, away_at in addresses.items() if not away_at}
-        starting[_PAGES] = venue.pages(where, logs, listen, show, service.address)
+        starting[_PAGES] = venue.pages(where, logs, listen, show, service.address, tell)
         found = _opened(stack, starting)
         url = found.pop(_PAGES)
         if not where.contest.public.pages:

@@ -80,7 +80,12 @@ def court(
 
 @contextmanager
 def pages(
-    where: ContestFolder, folder: Path, listen: str | None, show: bool, desk: str
+    where: ContestFolder,
+    folder: Path,
+    listen: str | None,
+    show: bool,
+    desk: str,
+    tell: Callable[[Phrase], None],
 ) -> Iterator[str]:
     """Serve the pages of a contest until the block ends; yield their address.
 
@@ -90,6 +95,7 @@ def pages(
         listen: where to listen; None: this machine only.
         show: whether to open a browser.
         desk: address of the office's desk.
+        tell: called when the gateway has ended and is started again.
     """
     words = ["web", "--contest", str(where.file), "--office", desk, "--json"]
     first = [*words, *(["--listen", listen] if listen else []), *(["--open"] if show else [])]
@@ -99,7 +105,7 @@ def pages(
     def again(opened: dict[str, Any]) -> list[str]:
         return [*words, "--listen", opened["listen"]]  # also if it took a free port: links stay
 
-    with kept_child(first, place, say("child.gateway"), again) as opened:
+    with kept_child(first, place, say("child.gateway"), again, tell) as opened:
         yield opened["url"]
 
 

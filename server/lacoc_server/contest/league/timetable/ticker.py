@@ -9,6 +9,8 @@ from lacoc_server.contest.league.facts import (
     Called,
     Closed,
     Drawn,
+    Moved,
+    OfDay,
     Played,
     RoundDrawn,
 )
@@ -16,6 +18,7 @@ from lacoc_server.contest.league.fixture import named
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import SeenCourt
 from lacoc_server.contest.league.timetable.schedule import waits_for_organiser
+from lacoc_server.contest.league.timetable.steered import steered
 from lacoc_server.contest.league.timetable.whereabouts import OfficeKnowledge
 from lacoc_server.contest.league.titles import title
 from lacoc_shared.words import Phrase, say
@@ -35,6 +38,8 @@ class Ticker:
         self._held: set[tuple[str, int]] = set()
         self._over = False
         self._to_draw = ""
+        self._before: Contest | None = None
+        """The contest of the last call; None: this is the first."""
 
     def newest(
         self, contest: Contest, facts: Sequence[AnyFact], known: OfficeKnowledge
@@ -50,12 +55,15 @@ class Ticker:
         if self._told < len(facts):
             decisions = {one.fact: one for one in decided(contest)}
         for fact in facts[self._told :]:
-            if (said := _said(contest, fact)) is not None:
+            if isinstance(fact, OfDay | Moved):
+                what = steered(self._before or contest, fact)
+                yield say("news.steered", what=what, by=fact.by or None)
+            elif (said := _said(contest, fact)) is not None:
                 yield said
             elif one := decisions.get(fact.id):
                 reason, by = one.reason or None, one.by or None
                 yield say("news.decided", what=one.what, reason=reason, by=by)
-        self._told = len(facts)
+        self._told, self._before = len(facts), contest
         for (pairing, game), why in known.held.items():
             if (pairing, game) not in self._held:
                 yield say("news.refused", match=named(contest, pairing, game), why=why)
