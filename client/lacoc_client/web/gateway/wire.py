@@ -83,7 +83,7 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
-    """Watch a court, or what the director shows, from now on: the first request; it may come again."""
+    """Watch a court, or what the director shows: the first request, and each that changes this."""
 
     court: _Short | None = None
     director: bool = False
