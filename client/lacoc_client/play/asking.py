@@ -31,15 +31,15 @@ class NoCourt(UserError):
 
 
 class NoAnswer(NoCourt):
-    """The court received a request and did not answer; it may still have done what was asked."""
+    """A court, studio or desk got a request and did not answer; it may still have done it."""
 
 
 class NotNow(UserError):
-    """The court refuses a request for now; it may accept the same request later."""
+    """A court, studio or desk is not there, or refuses for now; it may accept the request later."""
 
 
 class Patience:
-    """How long a command waits for its court; after each answer it waits as long again.
+    """How long a command waits for its court; each call of `until` waits as long again.
 
     Args:
         wait_s: how long; None: do not wait, because a person can try again.
@@ -135,7 +135,7 @@ def fetch(
 
 
 def refusal_of(payload: bytes) -> FileRefused | UserError:
-    """Make the error that is raised when a court refuses a request.
+    """Make the error that is raised when a court, a studio or a desk refuses a request.
 
     Returns:
         `FileRefused` if it lists mistakes in files, `NotNow` if the same request may be accepted

@@ -36,8 +36,7 @@ class BotPlayer:
     def see(self, frame: Frame) -> None:
         """React to a new frame: say ready, or press the key that the bot returns.
 
-        Raises:
-            UserError: if the seat is lost for good.
+        While the seat is not held, do nothing.
         """
         controller = self._controller
         if controller.hold is not Hold.HELD:

@@ -188,7 +188,8 @@ class Controller:
         self.reason: Phrase | None = None
         """Why the seat is not held, if this is known more exactly than `hold` says."""
         self.round_trip_ms: float | None = None
-        """Time from pressing the newest key to the frame that shows it [ms]."""
+        """Time from a key press to the frame that shows it, of the newest such key [ms]; None: none
+        was shown yet."""
 
     @property
     def index(self) -> int:
@@ -298,7 +299,7 @@ class Controller:
         return lambda: ask(self._session, self._keys, key, request, TryOutReply)
 
     def saw(self, frame: SeenFrame) -> None:
-        """Tell the court that the player, who sees the match on a page, still sees new frames.
+        """Tell the court, if the seat is held, that the player elsewhere still sees new frames.
 
         Args:
             frame: the frame that the player saw.
@@ -333,7 +334,7 @@ class Controller:
         return self._seq
 
     def poll(self, now_s: float) -> Frame | None:
-        """Send the last command again if it is time, and read the court's messages that arrived.
+        """Read the court's messages; send the last command again, or join again, if it is time.
 
         Args:
             now_s: `time.monotonic()`.

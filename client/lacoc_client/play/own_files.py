@@ -1,4 +1,4 @@
-"""A contestant's files on this machine, read again whenever they change."""
+"""A contestant's files on this machine, read again when they change."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,8 +16,9 @@ class OwnFiles:
     """The robot and gait files on this machine that a page sends, unless its user chose others.
 
     Args:
-        robot: an installed robot, a folder or a robot file; None: the contest's robot.
-        gaits: gait files; none: the newest file of each kind in the folder.
+        robot: an installed robot, a folder or a robot file, of which only a file is read again;
+            None: the contest's robot.
+        gaits: gait files; none: the newest of each kind in `folder`, else those beside the robot.
         folder: where gait files are looked for.
 
     Raises:
@@ -44,7 +45,7 @@ class OwnFiles:
         it can be used."""
 
     def look(self) -> bool:
-        """Read the files again if they have changed; return True if there is a new version.
+        """Read the files again if they have changed; return whether there is a new version.
 
         A file that is still being written is read at a later call.
         """

@@ -29,8 +29,9 @@ _ANSWER_S = 2.0
 class Spectator:
     """Everything public about a court: complete also for somebody who connects during the match.
 
-    One thread uses it. Only `poll` and `wait_frame` change the attributes. Messages that were lost
-    are requested and come later; frames and a controller's commands do not wait for them.
+    One thread uses it. Only `poll` and `wait_frame` change the attributes; `scene` may change the
+    sheet. Lost messages are requested and come later; frames and a controller's commands do not
+    wait for them, except for a sheet.
 
     Args:
         session: an open client session.
@@ -53,11 +54,11 @@ class Spectator:
         self._new_events: list[Event] = []
         self._view: CourtView[Event] = CourtView(lambda event, _: event)
         self.sheet: Sheet
-        """The sheet that belongs to the newest frame's scene."""
+        """The newest sheet; when `poll` returns a frame, it belongs to this frame's scene."""
         self._lacking_sheet = _Lacking(session, self.keys.sheet)
         self._read_sheet(fetch(session, self.keys, self.keys.sheet))
         self.frame: Frame | None = None
-        """The newest frame."""
+        """The newest frame whose sheet was here; None: there was none yet."""
         self.frame_s = time.monotonic()
         """When the newest frame arrived [s, `time.monotonic`]; before the first frame, when the
         wait for it began."""
@@ -65,7 +66,7 @@ class Spectator:
         """Since when frames have come whose sheet is not here [s]; None: the sheet fits the newest
         frame."""
         self.health: Health | None = None
-        """The newest health."""
+        """The newest health; None: none came yet."""
         self._strays = 0
         """Number of messages in a row that can't be decoded."""
         self._lacking_events = _Lacking(session, self.keys.event)
@@ -84,7 +85,7 @@ class Spectator:
             yet.
 
         Raises:
-            UserError: if the court's messages can't be decoded.
+            UserError: if the court's messages can't be decoded, or no sheet comes for its frames.
         """
         told: Health | None = None
         self._take_answers()

@@ -102,7 +102,7 @@ class TeamWay:
         return self._newest.team
 
     def next(self) -> Whereabouts | None:
-        """Wait until the team is called to a court, and return where; None: the contest is over.
+        """Wait until the team can take a seat, and return where; None: it will not be called again.
 
         Raises:
             UserError: if the token is not valid any more.
@@ -207,7 +207,7 @@ class TeamWay:
 
 
 def call_is_over(view: Spectator, call: str) -> bool:
-    """Return whether the match of a call is over: its result is official, or another one began."""
+    """Return whether the match of a call is over: official, void, or another one has begun."""
     frame, sheet = view.frame, view.sheet
     if sheet.call != call:
         return True

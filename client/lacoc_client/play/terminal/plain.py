@@ -81,7 +81,7 @@ def outlook_dict(outlook: Outlook, sheet: Sheet) -> dict[str, Any]:
 
 
 def marker_states(frame: Frame, sheet: Sheet) -> dict[str, str]:
-    """Return the state of each marker, by the marker's name."""
+    """Return the state of each marker, by the marker's name; empty if the frame has too few."""
     if 4 * len(frame.markers) < len(sheet.markers):
         return {}
     states = unpack_states(frame.markers, len(sheet.markers))

@@ -33,7 +33,7 @@ class Channel:
         self._viewers: dict[Viewer, None] = {}
 
     def add(self, viewer: Viewer) -> None:
-        """Let a page see this picture, and send it all that is known of the court."""
+        """Let a page see this picture; send it all of the court that the picture has shown."""
         assert self._late is not None
         self._viewers[viewer] = None
         viewer.send(self._told)
@@ -101,14 +101,14 @@ class Programme:
         self._second.remove(viewer)
 
     def seen_by(self, viewer: Viewer) -> Audience | None:
-        """Return the pages that see the same court as a page that follows the director."""
+        """Return the pages that see the same court as a page; None: it follows no picture here."""
         for channel in (self._first, self._second):
             if channel.has(viewer):
                 return self.audience(channel.court)
         return None
 
     def audience(self, court: str) -> Audience | None:
-        """Return the pages that see this court `AHEAD_S` late; None: it is not shown late yet.
+        """Return the pages that see a court in a picture of the director; None: there is none yet.
 
         Any thread may call it.
         """

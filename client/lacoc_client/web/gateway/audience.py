@@ -6,7 +6,7 @@ from lacoc_client.web.gateway.viewer import Frames, Viewer
 
 
 class Listener(Protocol):
-    """A part of the program that receives all messages that the pages of one court get."""
+    """A part of the program that receives all that pages get about the match at one court."""
 
     def send(self, framed: bytes) -> None:
         """Take a message that no page may miss, such as an event."""
@@ -19,7 +19,7 @@ class Listener(Protocol):
 
 
 class Audience:
-    """The pages that watch one court; used from the event loop only."""
+    """The pages that watch one court; used from the event loop only, except `frames`."""
 
     def __init__(self) -> None:
         self._viewers: dict[Viewer, None] = {}
@@ -31,11 +31,11 @@ class Audience:
         return sum(one.is_page for one in self._viewers)
 
     def add(self, viewer: Viewer) -> None:
-        """Add a page; it receives everything that the court sends from now on."""
+        """Add a page; it receives what the court sends from now on, frames at the page's rate."""
         self._viewers[viewer] = None
 
     def tap(self, listener: Listener) -> None:
-        """Add a listener; it receives what pages receive, but does not count as a page."""
+        """Add a listener; it receives what pages get from the court, but does not count as one."""
         self._listeners.append(listener)
 
     def remove(self, viewer: Viewer) -> None:

@@ -92,14 +92,14 @@ class Courts:
 
     @property
     def feeds(self) -> list[CourtFeed]:
-        """The feeds of all courts that somebody has watched or played at; any thread may read."""
+        """The feeds of all courts that somebody has needed so far; any thread may read."""
         return [feed for feed, _ in list(self._feeds.values())]
 
     def audiences(self, feed: CourtFeed) -> list[Audience]:
         """Return the pages that see a court, in one or two groups.
 
-        The first group sees it at once, the second some seconds late, because it follows the
-        director. Any thread may call it.
+        The first group sees it at once. The second follows the director, so it sees it some seconds
+        late if there are several courts. Any thread may call it.
         """
         followers = None if self._programme is None else self._programme.audience(feed.court)
         return [feed.audience] if followers is None else [feed.audience, followers]

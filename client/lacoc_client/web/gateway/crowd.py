@@ -62,9 +62,9 @@ class Crowd:
         return self._courts.watching() + round(sum(self._heard))
 
     async def tell(self) -> None:
-        """Tell all pages every second how many watch, and how often each cheer came.
+        """Tell the pages how many watch and cheer: each second if it has changed, else each fifth.
 
-        Runs until it is cancelled.
+        Runs until it is cancelled. A page that is too slow is not told.
         """
         seconds = 0
         while True:

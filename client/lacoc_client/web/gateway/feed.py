@@ -95,10 +95,10 @@ class CourtFeed:
         return self._connected
 
     async def joined(self) -> Session:
-        """Return the connection to the court; wait up to some seconds until it is open.
+        """Return the connection to the court; wait up to some seconds until the court is heard.
 
         Raises:
-            UserError: if it is still not open then.
+            UserError: if the court still sends no frames then.
         """
         end_s = time.monotonic() + _JOINED_S
         while not self._connected and time.monotonic() < end_s:

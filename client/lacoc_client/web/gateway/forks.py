@@ -83,8 +83,8 @@ class Forks:
             language: language of the command's errors.
 
         Raises:
-            UserError: if there is no such bot, if too many forks wait already, or if the command
-                fails; the message is then the command's own.
+            UserError: if the recording can't be read, if there is no such bot, if too many forks
+                wait already, or if the command fails; the message then has the command's own.
         """
         await asyncio.to_thread(_check_players, record, asked.players)
         if self._waiting >= _MOST_WAITING:

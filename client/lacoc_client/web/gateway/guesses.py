@@ -8,9 +8,9 @@ _GUESSES_HZ, _GUESSES_BURST = 0.5, 20
 """How many wrong codes of a machine are answered without a wait: in a second on average, and in a
 burst."""
 _LATER_S = 1.0
-"""Delay of the answer to each wrong code above these limits [s]. So a machine tries at most
-400 codes a second, even with 400 pages at a time. The right code never waits: a class may share one
-address."""
+"""Delay of the answer to each wrong code above these limits [s]. So a page tries at most as many
+codes a second as it may have open requests (a page of a class: one). The right code never waits: a
+class may share one address."""
 _MOST_SENDERS = 1000
 
 

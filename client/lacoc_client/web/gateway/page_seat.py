@@ -125,7 +125,7 @@ class PageSeat:
         return await threads.run(ask)
 
     def leave(self) -> None:
-        """Stop steering the robot, because the page has gone; the team keeps the seat."""
+        """Stop steering: the page has gone, or watches another court; the team keeps the seat."""
         self._end()
         if self._hold[0]:
             self._log(f"The page of seat {self._hold[0]} has gone.", "seat", seat=self._hold[0])

@@ -47,7 +47,8 @@ class Recordings:
     Args:
         folder: the folder; None: there are no recordings.
         over: returns the ids of the matches that are over but still open at their courts.
-        shown: returns the names of the recordings that everybody may see; None: all of them.
+        shown: returns the names of those recordings in the folder that everybody may see; None: all
+            of them.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Recordings:
         self._lock = Lock()
 
     def listed(self) -> list[ListedRecord]:
-        """List all recordings, the newest first."""
+        """List all recordings that may be seen, the newest first; start to copy missing ones."""
         with self._lock:
             self._copy()
             found = []

@@ -10,7 +10,7 @@ from lacoc_shared.words import say
 class Referees:
     """The pages that have shown a court's referee token; used from the event loop only.
 
-    One of them is the acting page: only it may make decisions.
+    At most one of them is the acting page: only it may make decisions.
     """
 
     def __init__(self) -> None:

@@ -192,7 +192,7 @@ class _Server(uvicorn.Server):
 
 
 def run(app: ASGIApp, port: Port, ready: Callable[[], None], most_bytes: int = JOIN_BYTES) -> None:
-    """Serve pages until Ctrl-C.
+    """Serve pages until Ctrl-C or another signal that ends a program.
 
     Args:
         app: the gateway's application.

@@ -67,7 +67,7 @@ class More(Protocol):
 
     @property
     def routes(self) -> Sequence[BaseRoute]:
-        """The HTTP routes that these further pages need besides their HTML file."""
+        """The routes that these further pages need besides their HTML file, also of WebSockets."""
 
     async def close(self) -> None:
         """Close what these pages have opened, when the gateway ends."""

@@ -43,8 +43,9 @@ class Socket(Protocol):
 class Viewer:
     """A page that watches a court, as the feed of the court sees it.
 
-    While the page is too slow, one frame waits, and a newer frame replaces it. All other messages
-    are written at once; a page that does not take them is closed.
+    While the page is too slow, one frame waits, and a newer frame replaces it; messages of
+    `send_if_fast` are dropped. All other messages are written at once; a page that does not take
+    them is closed.
 
     Args:
         socket: the page's WebSocket, or what stands in its place.

@@ -1,8 +1,8 @@
 """Messages between the gateway and a page (docs/gateway.md lists them).
 
 A message to a page is one byte for its kind, then the payload; a court's messages are passed on
-unchanged. A message from a page is a msgpack map with an `id` and the kind of request, `do`; the
-gateway answers each with a reply.
+unchanged, only before a scene stands its hash. A message from a page is a msgpack map with an `id`
+and the kind of request, `do`; the gateway answers each with a reply.
 """
 
 from enum import IntEnum
@@ -83,7 +83,7 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
-    """The first request: which court the page watches, how many frames a second, and who it is."""
+    """Watch a court, or what the director shows: the first request, and each that changes this."""
 
     court: _Short | None = None
     director: bool = False

@@ -44,11 +44,11 @@ class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
 
 
 class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
-    """Ask for the links of teams and referees; only who shows the organiser's key gets them."""
+    """Ask for the links of `ContestLinks`; only who shows the organiser's key gets them."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)]
     team: Annotated[str, msgspec.Meta(max_length=64)] = ""
-    """The team whose link is wanted; "": all teams and referees."""
+    """The team whose link is wanted, and no other; "": all links."""
 
 
 Asked = DeskAsk | LinkAsk | LinksAsk | Ping

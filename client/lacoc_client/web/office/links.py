@@ -52,7 +52,7 @@ class SeatLink(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class ContestLinks(msgspec.Struct, frozen=True, kw_only=True):
-    """Links of teams, referees and open seats, and the address at which teams enter."""
+    """Links of teams, referees, open seats and staff, and the address at which teams enter."""
 
     enter: str
     enter_qr: str

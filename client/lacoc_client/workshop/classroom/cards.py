@@ -17,7 +17,7 @@ from lacoc_shared.words import Phrase, say
 
 Need = Literal["hand", "stuck", "quiet", ""]
 """Why a student needs help: the hand is up, several trials failed in the same way, or the student
-has done nothing for long."""
+has done nothing for long. "": no help is needed."""
 
 QUIET_S = 300.0
 """A student who has a page open and does nothing for this time counts as quiet [s]."""
@@ -32,22 +32,22 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     name: str
     online: bool
     seen_s: float
-    """Time when the student last did something, in seconds since 1970 (UTC)."""
+    """Time when the student last did something or opened a page, in seconds since 1970 (UTC)."""
     phase: int
     states: tuple[State, ...]
     """State of each phase, from phase 0."""
     lesson_step: int
-    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
+    """The step of the lesson of one leg at which the student was last; 0: none yet."""
     in_lesson: bool
     """Whether the student has a page of the lesson open."""
     share: float
     """How much of the student's present phase is done, from 0 to 1."""
     missing: Phrase | None
-    """What the student must still do in this phase; None: nothing."""
+    """The first thing that the student must still do in this phase; None: nothing."""
     tries: int
     best_mm_s: float | None
-    """Highest forward speed of a trial with key B2 that stayed upright and off the floor; None:
-    there was no such trial."""
+    """Highest forward speed of a trial in which B2 was pressed (the last key is measured) and the
+    robot stayed upright and off the floor [mm/s]; None: there was no such trial."""
     last_mm_s: float | None
     """Forward speed of the last trial [mm/s]; None: there was no trial."""
     legs: tuple[str, ...]
@@ -56,7 +56,8 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     """For each leg the times in which its foot was down in the last trial, each as begin and end,
     in shares of the measured time; None: there was no trial since the class was opened."""
     said: Phrase | None
-    """First sentence of the explanation of the last trial."""
+    """First sentence of the explanation of the last trial; None: there was none since the class
+    was opened."""
     hand_up_s: float | None
     """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
     stuck: Phrase | None

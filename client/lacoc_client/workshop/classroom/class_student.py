@@ -33,7 +33,7 @@ class ClassStudent(Student):
         """Whether another browser may enter under this name with the class code, and then gets a
         token."""
         self.seen_s = 0.0
-        """Time when the student last did something, in seconds since 1970 (UTC)."""
+        """When the student last did something or opened a page, in seconds since 1970 (UTC)."""
         self.hand_up_s: float | None = None
         """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
         self._trial: TrialReply | None = None

@@ -95,7 +95,7 @@ class Classroom:
         self.addresses = tuple(addresses)
         self.state: ClassState = fresh_state()
         self.students: dict[str, ClassStudent] = {}
-        """All students who ever entered, by `same_name` of the nickname."""
+        """All students who ever entered and were not deleted, by `same_name` of the nickname."""
         self.teachers: dict[Viewer, None] = {}
         """The open pages of the teacher."""
         self.tournament = Tournament(folder, self._tell_tournament)
@@ -106,7 +106,7 @@ class Classroom:
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """Look for studios until the block ends; tell the pages when a studio comes or goes."""
+        """Tell pages of studios that come or go, until the block ends; then close the class."""
         self.studios.start()
         looking = asyncio.get_running_loop().create_task(self._look())
         try:
@@ -244,7 +244,7 @@ class Classroom:
             name: name of the group; "": none.
 
         Raises:
-            UserError: if the group is full, or its name is not allowed.
+            UserError: if the group is full, its name is not allowed, or there are too many groups.
         """
         if name:
             await self.groups.join(student, name)
@@ -285,7 +285,7 @@ class Classroom:
         return await asyncio.wrap_future((await self._store()).evidence())
 
     async def documents(self) -> list[Document]:
-        """Return the drafts and tokens of all students, and the settings of the class."""
+        """Return the tables of students and groups, the students' tokens, the class's settings."""
         return (await self._store()).documents()
 
     def add_teacher(self, viewer: Viewer) -> None:

@@ -24,7 +24,7 @@ class ClassDoor:
     """Lets students into a class.
 
     Args:
-        students: everybody who ever entered, by `same_name` of the nickname.
+        students: everybody who entered and was not deleted, by `same_name` of the nickname.
         code: returns the class code.
         new: makes a student and adds it to `students`.
         forget: deletes everything that is kept of a student.

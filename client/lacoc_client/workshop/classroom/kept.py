@@ -20,9 +20,9 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 
 
 def student_files(kept: Iterable[Document]) -> list[Document]:
-    """Return the gait and robot files that all tables in a class file stand for.
+    """Return the gait and robot files that the tables in a class file stand for.
 
-    Documents that are no tables are left out. The files of a group are under the group's name.
+    Tables with a bad cell or a mistake are left out. A group's files are under the group's name.
     """
     kept = list(kept)
     by_owner: dict[str, list[Document]] = {}

@@ -41,7 +41,7 @@ class ClassMatch(msgspec.Struct, frozen=True, kw_only=True):
     void: bool
     """Whether the match does not count, because physics stopped in it."""
     record: str | None
-    """Name of the record's file in the folder of the records."""
+    """Name of the record's file in the folder of the records; None: there is no record."""
 
 
 class LeftOut(msgspec.Struct, frozen=True, kw_only=True):

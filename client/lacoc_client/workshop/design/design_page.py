@@ -173,7 +173,7 @@ class DesignPage:
             self._host.learned(learner.student)
 
     async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:
-        """Repeat a trial with the sample gait; None if the robot can't walk with the sample."""
+        """Repeat a trial with the sample gait; None: it had no table, or no sample has its legs."""
         table = (await asyncio.to_thread(self._host.sample)).table
         if table is None or asked.table is None or table.legs != asked.table.legs:
             return None
@@ -181,7 +181,7 @@ class DesignPage:
         return (await self._studio.trial(sample))[0]
 
     async def _share(self, asked: requests.TableAsk, learner: Learner) -> Any:
-        """Merge a page's change into the shared table; when this returns, it is on the disk."""
+        """Merge a page's change into the shared table; see `SharedTable.take`."""
         update = TableUpdate(
             table=asked.table,
             epoch=asked.epoch,
@@ -204,7 +204,7 @@ class DesignPage:
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
-            UserError: if no court can be reached.
+            UserError: if there is no court here, or it does not become ready.
         """
         if self._host.playing is None:
             raise UserError(say("class.no-court"))
@@ -305,7 +305,7 @@ def parsed(asked: requests.ParseAsk) -> Any:
 
     Raises:
         FileRefused: with every mistake of a gait file.
-        UserError: if the page sent neither bytes nor text.
+        UserError: if the page sent neither bytes nor text, or a robot file is not UTF-8 text.
     """
     data = asked.data.encode() if isinstance(asked.data, str) else asked.data
     if not isinstance(data, bytes):

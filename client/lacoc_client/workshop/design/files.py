@@ -57,11 +57,13 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
     Args:
         name: name of the file.
         content: the table, or a robot file's text.
-        before: the file as it is now; None: there is none.
+        before: the file as it is now, of which a table of postures keeps the rest; None: there is
+            none.
 
     Raises:
         FileRefused: with every mistake of the table, or of the workbook to change.
-        UserError: if a file with this suffix can't have this content.
+        UserError: if a file with this suffix can't have this content, if the workbook would lose
+            something, or if a locomotion table has no row of a key below its highest key.
     """
     if isinstance(content, str):
         if _suffix(name) != _ROBOT:

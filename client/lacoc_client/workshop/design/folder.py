@@ -126,11 +126,11 @@ class Folder:
             content: the table, or the robot file's text.
             version: version of the file that the content was made from; `ABSENT`: a new file.
             force: save even if the file has changed since that version. Remarks and sheets beside
-                the table stay as they are in the file now.
+                a table of postures stay as they are in the file now.
 
         Raises:
             FileRefused: with every mistake of the table, or of the workbook to change.
-            UserError: if the file can't be written.
+            UserError: if the name is not allowed, or the file can't be read or written.
         """
         with self._lock:
             path = self._path(name)
@@ -223,7 +223,7 @@ def _as_read(name: str, data: bytes, read: FileContent) -> Read:
 
 
 def _conflicting(name: str, data: bytes | None) -> Read:
-    """Read a file that another program has changed; return its mistakes instead of raising them."""
+    """Read a file that another program has changed; return a gait's mistakes, don't raise them."""
     if data is None:
         return Read(version=ABSENT)
     try:

@@ -55,7 +55,7 @@ class ReadAsk(Ask, frozen=True, kw_only=True, tag="read"):
 
 
 class SampleAsk(Ask, frozen=True, kw_only=True, tag="sample"):
-    """Read the sample gait of the robot that `lacoc design` began with."""
+    """Read the sample postures of the robot that pages of this folder or class begin with."""
 
 
 class ParseAsk(Ask, frozen=True, kw_only=True, tag="parse"):
@@ -79,7 +79,7 @@ class SaveAsk(Ask, frozen=True, kw_only=True, tag="save"):
 
 
 class WriteAsk(Ask, frozen=True, kw_only=True, tag="write"):
-    """Make a gait or robot file for the user to download."""
+    """Make a gait file for the user to download; the suffix of its name decides its format."""
 
     name: Name
     table: FileTable
@@ -339,7 +339,7 @@ def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
     """Decode a request with this decoder.
 
     Raises:
-        Unreadable: if the decoder can't decode it.
+        Unreadable: if the decoder can't decode it, or it is too long.
     """
     try:
         if len(data) > REQUEST_BYTES:

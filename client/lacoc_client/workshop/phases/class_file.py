@@ -17,7 +17,8 @@ _APPLICATION, _VERSION = 0x4C41434F, 1
 """Numbers in the header of the SQLite file by which it is recognised as a class: "LACO" in ASCII,
 and the version of `_TABLES`."""
 _BESIDE = ("", "-wal", "-shm", "-journal")
-"""Endings of the names of further files that SQLite makes beside a database."""
+"""Endings of the names of a database's files: of its own, and of those that SQLite makes beside
+it."""
 _TABLES = (
     """
     CREATE TABLE evidence (
@@ -56,13 +57,13 @@ class Kept(NamedTuple):
 
 
 class Document(NamedTuple):
-    """The newest content of a document, such as a draft; in SQL a row of `tables`."""
+    """The newest content of a document, such as a table; in SQL a row of `tables`."""
 
     student: str
-    """The student whose document it is; "": it is of the whole class, or of a person who designs
-    alone."""
+    """The student or group (`group_tables.OF_GROUP`) whose document it is; "": the whole class, or
+    a person who designs alone."""
     name: str
-    """Name of the document, such as "draft"."""
+    """Name of the document, such as "table"."""
     version: str
     at_s: float
     content: bytes

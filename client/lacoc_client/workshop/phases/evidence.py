@@ -71,7 +71,7 @@ class LegEdit(msgspec.Struct, frozen=True, array_like=True):
     angles_deg: tuple[float, ...]
     """(3,) angles of the leg after the edit."""
     before_deg: tuple[float, ...] = ()
-    """(3,) angles of the leg before the edit; empty: the row is new."""
+    """(3,) angles of the leg before the edit; empty: the row is new, or had other legs."""
 
 
 class Edited(_EvidenceKind, frozen=True, kw_only=True, tag="edited"):
@@ -147,13 +147,13 @@ class CheckedGait(_EvidenceKind, frozen=True, kw_only=True, tag="checked"):
 
     version: _Word
     keys: int
-    """Number of keys of level B that the gait has."""
+    """Number of keys, as in the reply to the check (`learner.CheckReply`)."""
     mistakes: int
     """Number of mistakes that were found; 0 in evidence that is kept."""
 
 
 class Compared(_EvidenceKind, frozen=True, kw_only=True, tag="compared"):
-    """The student compared trials of two versions of the table."""
+    """A trial of the student was compared with the same trial of another version of the table."""
 
     version: _Word
     against: _Word

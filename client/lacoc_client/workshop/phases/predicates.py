@@ -147,9 +147,9 @@ class TriedWhere:
     """Sentence that says what is missing while there is no trial."""
 
     def look(self, evidence: Sequence[Evidence]) -> Outcome:
-        """Return how far the rule is met by the trial that keeps most of the limits.
+        """Return how far the rule is met by the trial with the largest share that is done.
 
-        If several trials keep equally many, it is the last of these.
+        If several trials have the same share, it is the last of these.
         """
         tries = [one.facts for one in evidence if isinstance(one, Tried)]
         best = [every([bound.look(facts) for bound in self.bounds]) for facts in reversed(tries)]

@@ -39,7 +39,7 @@ class StudentProgress:
     coached: bool
     """Whether the student has ever taken over changes that the coach found."""
     lesson_step: int
-    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
+    """The step of the lesson of one leg at which the student was last; 0: none yet."""
     seen: int
     """Number of pieces of evidence from which this progress was computed."""
 

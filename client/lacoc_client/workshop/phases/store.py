@@ -34,9 +34,9 @@ class ClassStore:
     """The evidence and documents of a class, kept on disk; may be used from any thread.
 
     A thread of its own works on the file, so that no event loop waits for the disk. The methods
-    that write return futures, which are done when the data are on the disk (await one with
-    `asyncio.wrap_future`). If the process is killed, evidence whose future is done is not lost. A
-    document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
+    that write, except `keep`, return futures, which are done when the data are on the disk (await
+    one with `asyncio.wrap_future`). If the process is killed, evidence whose future is done is not
+    lost. A document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
 
     A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
     futures fail with a `UserError`, and documents wait until there is room.

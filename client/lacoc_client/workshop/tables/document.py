@@ -17,8 +17,8 @@ from lacoc_shared.words import say
 STATE_BYTES = 512 << 10
 """Longest state of a document [bytes]; an update that makes it longer is refused."""
 COMPACT_BYTES = 48 << 10
-"""If a state is longer by this than a state of the same table without earlier edits, the document
-without earlier edits takes its place [bytes]."""
+"""If a state has become longer by this than the table, without earlier edits, was when the document
+was made, a document without earlier edits takes its place [bytes]."""
 
 
 class TableDocument:
@@ -88,13 +88,13 @@ class TableDocument:
 
     @property
     def is_long(self) -> bool:
-        """Whether earlier edits take so much room that a document without them should be used."""
+        """Whether the state is so long that a document without earlier edits should be used."""
         return len(self.state) > self._compact_bytes
 
     def fresh(self) -> "TableDocument":
         """Return a document with the same entries of the table and without earlier edits.
 
-        It can't be merged with a page's edits.
+        Edits that a page has made in this document can't be merged into the new one.
         """
         return document_of(self._entries)
 

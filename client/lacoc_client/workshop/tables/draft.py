@@ -49,7 +49,7 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
-    """Return the table of a document with its keys and robot; None while a cell has no angle."""
+    """Return a document's table, keys and robot; None: it has no rows, or a cell has no angle."""
     table = _table(entries)
     if table is None:
         return None
@@ -100,7 +100,7 @@ def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
 def _sequences(
     entries: Mapping[str, Entry], table: FileTable
 ) -> tuple[tuple[int, ...], ...] | None:
-    """Return the digits of each key of level B; None if the table itself has the sequences.
+    """Return the digits of each key of level B; None: the table has them, or nobody chose any.
 
     A key without postures, or with one that the table lacks, gets only the table's first posture.
     """

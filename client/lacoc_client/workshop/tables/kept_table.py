@@ -26,7 +26,7 @@ class _OldDraft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def kept_table(documents: Iterable[Document]) -> Document | None:
-    """Return the table in the documents of a student; None: there is no table that can be read.
+    """Return the table in the documents of a student; None: there is none, or no readable draft.
 
     A draft that an earlier version of the program wrote is turned into a table.
     """

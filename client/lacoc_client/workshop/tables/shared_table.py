@@ -97,7 +97,7 @@ class SharedTable:
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table without a bad cell; None: there was none."""
+        """The newest table without a bad cell; None: there was none, or nobody has changed it."""
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
@@ -142,12 +142,13 @@ class SharedTable:
     async def take(self, viewer: Viewer, told: TableUpdate) -> dict[str, Any]:
         """Merge an update of a page, and send it to the other pages.
 
-        When this returns, the update is on the disk.
+        When this returns, the state is on the disk, or the student is told why not. A table that
+        pages have only begun, without a typed cell, is not kept.
 
         Raises:
-            UserError: if the update is for another table or an older document, or if the document
-                would not be a table any more. The page then opens the table again with what
-                `opened` returns.
+            UserError: if the update is for another table or an older document, if the document
+                would not be a table any more, or if too many updates come. The page then opens the
+                table again with what `opened` returns.
         """
         if viewer not in self.people or (told.table, told.epoch) != (self.name, self._epoch):
             raise UserError(say("tables.older"))

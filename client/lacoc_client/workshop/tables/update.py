@@ -35,7 +35,7 @@ class ItemSpan(NamedTuple):
 
 
 class Update(NamedTuple):
-    """The edits in an update, and the earlier edits that must be in the document already."""
+    """The edits in an update, and those that must be in it or in the document already."""
 
     edits: tuple[ItemSpan, ...]
     needs: tuple[ItemSpan, ...]

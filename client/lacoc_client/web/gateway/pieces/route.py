@@ -36,7 +36,7 @@ class PiecesNow(msgspec.Struct, frozen=True):
     closed: int
     """Number of complete pieces; the newest complete one has this number less one."""
     room: bool
-    """Whether there is room for this page on a WebSocket."""
+    """Whether enough places on WebSockets are free that this page should ask for one."""
     share: float
     """The chance with which a page reports every 10 s that it is there."""
 

@@ -61,7 +61,7 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
     trouble: Phrase | None
     """Why progress can't be kept, or that its file was damaged; None: all is well."""
     lesson_step: int
-    """The last step of the lesson of one leg that the student has reached; 0: none yet."""
+    """The step of the lesson of one leg at which the student was last; 0: none yet."""
     phases: tuple[PhaseState, ...]
     """All phases; each stands at the index that is its number."""
     rules: StudentRules

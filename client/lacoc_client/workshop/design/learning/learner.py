@@ -72,7 +72,8 @@ class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to a page that had its table checked (`CheckAsk`)."""
 
     keys: int
-    """Number of keys of level B; keys that share one sequence of postures count once."""
+    """Number of keys: in a table of postures, of different sequences that the page sent; else of
+    all keys."""
     mistakes: tuple[Mistake, ...] = ()
 
 
@@ -196,7 +197,7 @@ class Learner:
     async def stepped(self, asked: requests.LessonAsk) -> None:
         """Keep as evidence that the student reached a step of the lesson or answered a question.
 
-        Reaching the same step again is not kept.
+        A step that the student reaches twice in a row is kept once.
 
         The first answer to a question counts for the step; a later answer counts as new work.
         """

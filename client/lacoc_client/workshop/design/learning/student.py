@@ -45,11 +45,11 @@ class Student:
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table on which the student works; None: nothing was changed yet."""
+        """The newest table without a bad cell; None: there was none, or nobody has changed it."""
         return self.table.draft
 
     def open_kept(self) -> None:
-        """Load the student's table from the diary; if it has none, the table stays as it is."""
+        """Load the student's own table from the diary, if it has one that can be read."""
         kept = kept_table(self.diary.documents)
         if kept is not None:
             with suppress(UserError):  # of another version of this program
@@ -57,7 +57,7 @@ class Student:
         self.table = self.own
 
     def sit_at(self, table: SharedTable) -> None:
-        """Let the student work on another table from now on; all the student's pages show it."""
+        """Let the student work on another table; all the student's pages of /design show it."""
         if table is self.table:
             return
         for viewer in self.viewers:
@@ -76,7 +76,7 @@ class Student:
             viewer.send(message)
 
     def greet(self, viewer: Viewer, lesson: bool) -> None:
-        """Add a page of the student that was let in, and send it what it shows first.
+        """Add a page of the student that was let in; a page of /design has the table open.
 
         Args:
             viewer: the page.

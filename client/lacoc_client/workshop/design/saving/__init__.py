@@ -1,1 +1,1 @@
-"""Saves tables into a student's own files, and keeps everything else that is in them."""
+"""Saves a student's own files; with a table of postures, all else that is in them is kept."""

@@ -11,7 +11,7 @@ def edit_text(data: bytes, name: str, table: PostureTable) -> bytes:
     """Return the bytes of a text file of postures after a table has replaced its postures.
 
     Lines of unchanged postures, and all lines below the postures, stay as they are. If the file
-    has another number of legs than the table, or mistakes, all of it is written anew.
+    has locomotion, another number of legs than the table, or mistakes, all is written anew.
 
     Args:
         data: the file as it is now.

@@ -60,7 +60,7 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
 
 
 def formulas_in(data: bytes, name: str) -> int:
-    """Count the cells of a workbook's table whose numbers are results of formulas.
+    """Count the cells with formulas in the rows of a workbook's postures, also beside the table.
 
     Args:
         data: an .xlsx file that can be read as postures.

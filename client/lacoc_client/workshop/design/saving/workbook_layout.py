@@ -34,7 +34,7 @@ def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
     """Find the sheet's row of each posture, and a free row for each new posture.
 
     Raises:
-        UserError: if the postures do not fit into the sheet.
+        UserError: if the postures do not fit into the sheet, or it is for another number of legs.
     """
     filled = [Row(row.number, trimmed(row.cells)) for row in rows]
     filled = [row for row in filled if row.cells]

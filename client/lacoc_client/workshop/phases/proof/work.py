@@ -91,7 +91,7 @@ def lesson_steps(evidence: Sequence[Evidence]) -> set[int]:
 
 @dataclass(frozen=True)
 class LegWork:
-    """Work: turn all three joints of a leg, and guess each time where its foot goes."""
+    """Work: turn the joints of a leg into several postures, and guess where its foot goes."""
 
     joints: int
     postures: int
@@ -145,7 +145,7 @@ class TrialWork:
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return how much of the work the best trial has done.
 
-        After a wrong answer to the phase's question one new number is enough.
+        After a wrong answer to the phase's question one new number is enough in such a trial.
         """
         trials = own_trials(evidence, start)
         outcomes = [self._judged(one, again) for one in reversed(trials)]
@@ -176,13 +176,13 @@ class VersionWork:
     shown: Predicate
     numbers: int
     beside: tuple[Predicate, ...] = ()
-    """Further rules, which may be met with any version of the table."""
+    """Further rules, which may be met with any version of the table, also before the phase."""
     kinds: ClassVar = (Tried, CheckedGait, Compared, Named, Voted)
 
     def look(self, evidence: Sequence[Evidence], start: int, again: bool) -> Outcome:
         """Return how much of the work is done with the best version of the table.
 
-        After a wrong answer to the phase's question a new trial is enough.
+        After a wrong answer to the phase's question a trial with one new number is enough.
         """
         trials = own_trials(evidence, start)
         if again:
