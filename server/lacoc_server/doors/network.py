@@ -189,7 +189,7 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse all requests that doors judge, because no beat passes; still answer who fetches data.
+        """Refuse requests that doors judge, because no beat passes; still answer who fetches data.
 
         Args:
             why: sentence for the senders.
