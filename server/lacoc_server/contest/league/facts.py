@@ -44,7 +44,8 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     files: str = ""
     """Hash of the robot file, the gait files, the bot and the picture."""
     bot: str = ""
-    """Name of the bot that plays for the team; "": none (`draws.Team.bot`)."""
+    """Name of the bot that plays for the team; "": none, so people play, or without a network the
+    bot that steers teams without one."""
     picture: bool = False
     """Whether a picture of the team is among the files."""
     club: Annotated[str, msgspec.Meta(max_length=64)] = ""
