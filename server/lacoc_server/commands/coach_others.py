@@ -109,7 +109,7 @@ def written(task: Task, gait: Gait, digit: int, angles: Angles) -> bytes:
 
 
 def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int) -> list[Angles]:
-    """Read the tables of gaits that a student kept, from which new gaits are bred.
+    """Read the tables of gaits that the user kept (`--keep`), from which new gaits are bred.
 
     Raises:
         UserError: if a file can't be read, or its key has another sequence than the task's.

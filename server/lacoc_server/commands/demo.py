@@ -172,7 +172,7 @@ class _DemoCourt:
 
 
 def _follow(court: _DemoCourt, needed: Sequence[subprocess.Popen[str]], *, quiet: bool) -> str:
-    """Show events until the match is official or void; return the sentence of the result.
+    """Show events until the match is official or void; return the sentence of the result, if any.
 
     Raises:
         UserError: if a process that the match needs fails.

@@ -1,8 +1,8 @@
 """Checks what arrives at a court: tokens, sessions, sequence numbers, seals, floods.
 
-Pure: bytes and the time come in, inputs and refusals come out. A message passes only with proof
-that the seat's own controller sent it. Nothing that arrives ever raises an exception, or costs more
-than a fixed part of a beat.
+Pure: bytes and the time come in, inputs and refusals come out. A join passes only with a token of
+the seat, any other message only with proof that the seat's own controller sent it. Nothing that
+arrives ever raises an exception, or costs more than a fixed part of a beat.
 """
 
 from collections import Counter, deque

@@ -170,8 +170,8 @@ class CourtNetwork:
     def poll(self, now_s: float, match: int, beat: int, silent: Sequence[bool]) -> list[Arrival]:
         """Take in what arrived since the last beat.
 
-        A request that a door refuses is answered at once and is not among the arrivals. The same is
-        true of a request that only shows a referee's token.
+        A request that a door refuses is answered at once and is not among the arrivals. Nor is one
+        that gives the match no input, such as a request of the office, or where a team plays.
 
         Args:
             now_s: monotonic time.
@@ -189,7 +189,7 @@ class CourtNetwork:
         return arrivals
 
     def turn_away(self, why: Phrase) -> None:
-        """Refuse requests to the match, because no beat passes; still answer who only fetches data.
+        """Refuse requests that doors judge, because no beat passes; still answer who fetches data.
 
         Args:
             why: sentence for the senders.

@@ -22,7 +22,8 @@ def show(arena: str, seconds: float | None, speed: float, folder: Path, *, headl
         headless: whether to play without courts and pages.
 
     Raises:
-        typer.Exit: with 1 if the published standings do not follow.
+        typer.Exit: with the exit code of `lacoc contest verify`, if it is not 0. It is 3 if bots
+            played at courts.
         UserError: if something can't be written, or a process does not start.
     """
     from lacoc_server.commands.contest.demo_files import champion, write_contest

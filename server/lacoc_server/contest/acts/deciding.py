@@ -215,7 +215,8 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
     """Return the fact that records an organiser's decision.
 
     Raises:
-        UserError: if there is no such match, game or team, or the reason or the points are missing.
+        UserError: if there is no such match or team, the game is neither played nor the next one of
+            its match, or the reason or the points are missing.
     """
     if not wanted.reason.strip():
         raise UserError(say("decide.needs-reason"))

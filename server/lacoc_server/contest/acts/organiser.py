@@ -54,7 +54,7 @@ def enter(
     Args:
         file: the contest file.
         team: name of the team.
-        folder: folder with its files; None: the contest's robot and gait.
+        folder: folder with its files; None: the contest's robot with its sample gait.
         bot: the bot that plays for it; "": people play.
         reason: why the team enters, or its files change; needed once entries are closed.
         found: called with the team's files before they are weighed in.
@@ -234,7 +234,8 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
         team: name of a team; None: all teams in the contest that are not bots.
 
     Raises:
-        UserError: if there is no such team, or a token can't be written.
+        UserError: if there is no such team, if no team has people (for None), or if a token can't
+            be written.
     """
     where = ContestFolder(file)
     with FactStore(where.facts) as store:

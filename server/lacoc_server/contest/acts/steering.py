@@ -75,7 +75,8 @@ def pausing(contest: Contest, until_ms: int, reason: str, now_ms: int) -> Paused
         now_ms: the time now, in milliseconds since 1970, UTC.
 
     Raises:
-        UserError: if the contest is paused already, or `until_ms` is in the past.
+        UserError: if the contest is paused without an end already and would be so again, or
+            `until_ms` is in the past.
     """
     if contest.day.paused and not until_ms:
         raise UserError(say("day.paused-already"))
@@ -96,7 +97,7 @@ def resuming(contest: Contest, now_ms: int) -> Resumed:
 
 
 def shifting(by_ms: int, reason: str) -> Shifted:
-    """Return the fact that postpones everything still to come by `by_ms`, in milliseconds."""
+    """Return the fact that postpones all matches still to come by `by_ms`, in milliseconds."""
     return new(Shifted, by_ms=by_ms, reason=reason)
 
 

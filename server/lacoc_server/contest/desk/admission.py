@@ -11,7 +11,7 @@ from lacoc_shared.words import Phrase, say
 
 _GUESSES_HZ, _GUESSES_BURST = 20.0, 200
 """How many wrong secrets a second, and how many at once, are told that they are wrong. Beyond that
-the answer is `Slower`, so nobody can guess one of the 32 to the power of 6 event codes."""
+the answer is `Slower`. What slows down whoever guesses is the gateway (`web.gateway.guesses`)."""
 
 
 class Slower(UserError):

@@ -1,4 +1,4 @@
-"""The desk: it checks the secret of each request, and answers it."""
+"""The desk: it checks the secret of each request that needs one, and answers the request."""
 
 import threading
 import time

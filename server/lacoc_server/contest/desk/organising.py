@@ -58,7 +58,7 @@ def approve(book: Book, asked: Approve) -> Said:
 def decline(book: Book, teams: Sequence[str]) -> Said:
     """Turn down what teams have handed in, and forget the mistakes in files that were refused.
 
-    A team that is already in the contest keeps its token; any other team loses it.
+    A team that is already in the contest keeps its token; any other team loses it. Contacts stay.
 
     Raises:
         UserError: if a team has neither waiting nor refused files. Then no team is declined.

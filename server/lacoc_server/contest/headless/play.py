@@ -87,7 +87,8 @@ def play_contest(
         engine: plays the games.
         steer: the bot that steers teams without a bot.
         changed: called with the contest, at the beginning and after each change.
-        tell: called at the end for each team that pressed keys which its gait does not have.
+        tell: called at the end for each team that, in games of this call, pressed keys which its
+            gait does not have.
 
     Returns:
         How many games this call played; games whose result was already there do not count.

@@ -1,6 +1,6 @@
 """The contacts and clubs of the teams, as each team gave them when it applied.
 
-Only the organiser reads them.
+The organiser and the staff read them. A club becomes public when its team enters.
 """
 
 from pathlib import Path

@@ -42,7 +42,8 @@ class ContestEntry(msgspec.Struct, frozen=True, kw_only=True):
     postures: bytes | None
     locomotion: bytes | None
     bot: str = ""
-    """Name of the bot that plays; "": people play."""
+    """Name of the bot that plays; "": none, so people play, or without a network the bot that
+    steers teams without one."""
     program: bytes | None = None
     """Python source of the bot; None: the bot is installed."""
     picture: bytes | None = None
@@ -134,7 +135,7 @@ def gather_entry(folder: Path | None, bot: str, robot: str) -> HandedIn:
         robot: the contest's robot: an installed one or a file.
 
     Raises:
-        UserError: if the folder has no gait, or a file can't be read.
+        UserError: if there is no such folder, it has no gait, or a file can't be read.
     """
     if folder is None:
         handed = hand_in(SeatFiles(None, *sample_gait_files(robot)), robot)

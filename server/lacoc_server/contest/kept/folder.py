@@ -82,7 +82,7 @@ class ContestFolder:
 
     @property
     def games(self) -> list[Arena]:
-        """The arenas of all stages; stages with the same arena and levels of keys share one."""
+        """The arenas of all stages but the open one; those with equal name and levels share one."""
         found: dict[tuple[str, tuple[Level, ...]], Arena] = {}
         for plan in self.plans:
             arena = game(plan)

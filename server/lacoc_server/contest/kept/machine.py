@@ -23,7 +23,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     office: str = ""
     """For a copy: address of the office that is copied."""
     known: tuple[str, ...] = ()
-    """For an office: addresses of machines that were the office before, or copy it now."""
+    """For an office: addresses of machines that were the office before, or have copied it."""
     copied_ms: int = 0
     """For a copy: the last time at which all of it was equal to the office's folder, in
     milliseconds since 1970, UTC; 0: never yet."""

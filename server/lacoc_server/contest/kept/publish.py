@@ -32,7 +32,8 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
 
     The folder can be written again while the contest goes on. Each file is replaced in one step,
-    the sheet as the last one. The files of teams are left out until entries are closed.
+    the sheet as the last one. The files of teams are left out until entries are closed. Records are
+    written whatever the contest file says about replays, and the sheet names them.
 
     Args:
         folder: the contest.

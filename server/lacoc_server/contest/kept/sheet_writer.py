@@ -50,7 +50,7 @@ class SheetWriter:
 
         Args:
             contest: the contest as it is now; the same object as before if nothing has changed.
-            expected: where and when open matches will probably begin, by pairing.
+            expected: where and when matches to come will probably begin, by pairing.
 
         Raises:
             UserError: if the sheet can't be written.

@@ -14,7 +14,7 @@ _ACROSS = ("points", "difference", "scored")
 
 
 def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[Phrase, ...]:
-    """Say why each team of a stage is in it, and, if its seed is not its rank, why.
+    """Say why each team of a stage is in it, and, if it was moved to keep teams apart, which.
 
     Args:
         contest: the contest.
@@ -22,8 +22,8 @@ def reasons(contest: Contest, plan: Planned, entries: tuple[str, ...]) -> tuple[
         entries: its teams by their seeding.
 
     Returns:
-        A reason for each team. Empty if the stage follows no drawn stage and its teams are in the
-        order in which they entered: then there is nothing to explain.
+        A reason for each team. Empty if the stage follows no drawn stage and no team was moved to
+        keep teams apart: then there is nothing to explain.
     """
     before = next((view for view in contest.stages if view.name == plan.after), None)
     how = FORMATS.get(plan.format)

@@ -126,7 +126,7 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     teams: tuple[Team, ...]
     """The teams, in the order in which they entered."""
     closed: bool
-    """Whether nobody can enter any more."""
+    """Whether entries are closed: then a team enters only with a reason."""
     stages: tuple[StageView, ...]
     """The drawn stages, in the order of their draws."""
     planned: tuple[Planned, ...]
@@ -230,7 +230,8 @@ def compute(facts: Iterable[AnyFact], formats: Mapping[str, Format]) -> Contest:
         formats: the known formats by name.
 
     Raises:
-        UserError: if two facts have the same id, or a stage has an unknown format or tie-break.
+        UserError: if two different facts have the same id, or a stage has an unknown format or
+            tie-break.
     """
     known = ordered(facts)
     contest = _computed(known, formats)
@@ -328,6 +329,7 @@ def next_round(contest: Contest, name: str, formats: Mapping[str, Format]) -> tu
     """Pair the next round of a stage.
 
     Raises:
+        KeyError: if no stage of this name was drawn.
         UserError: if no round can be drawn now.
     """
     view = contest.stage(name)
@@ -369,7 +371,7 @@ def _view(
 def _note_unused(
     match: ContestMatch | None, about: Sequence[OfMatch], unused: dict[str, Phrase]
 ) -> None:
-    """Note results and decisions that have no effect on their match, each with the reason."""
+    """Note the facts about a match that have no effect on it, each with the reason."""
     used = {game.fact for game in match.games} if match else set()
     teams = (match.teams[0] or "", match.teams[1] or "") if match else ("", "")
     counted, is_void, _ = counting(teams, about)
@@ -463,7 +465,7 @@ def end_ms(begin_ms: int, length_ms: int) -> int:
 
 
 def _day(facts: Sequence[AnyFact]) -> Day:
-    """Return whether games are called, as the newest pause and all later shifts say."""
+    """Return whether games are called, by the newest pause or resumption and all later shifts."""
     day = Day(paused=False, until_ms=0, reason="")
     for fact in facts:
         match fact:

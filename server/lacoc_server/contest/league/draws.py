@@ -34,7 +34,8 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
     files: str
     """Hash of the files with which it plays."""
     bot: str = ""
-    """Name of the bot that plays for it; "": people play."""
+    """Name of the bot that plays for it; "": none, so people play, or without a network the bot
+    that steers teams without one."""
     club: str = ""
     """The team's school or club; "": none."""
     picture: bool = False
@@ -60,7 +61,7 @@ class Team(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[str, Team]:
-    """Return the teams by name, in the order in which they entered.
+    """Return the teams by name, in the order in which they first entered.
 
     Args:
         facts: in their order.

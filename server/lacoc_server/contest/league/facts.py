@@ -42,9 +42,10 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
 
     team: Name
     files: str = ""
-    """Hash of the robot file, the gait files and the bot."""
+    """Hash of the robot file, the gait files, the bot and the picture."""
     bot: str = ""
-    """Name of the bot that plays for the team; "": people play."""
+    """Name of the bot that plays for the team; "": none, so people play, or without a network the
+    bot that steers teams without one."""
     picture: bool = False
     """Whether a picture of the team is among the files."""
     club: Annotated[str, msgspec.Meta(max_length=64)] = ""
@@ -54,7 +55,7 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
 
 
 class Closed(Fact, frozen=True, kw_only=True, tag="closed"):
-    """Entries are closed: nobody enters any more, and files change only with a reason."""
+    """Entries are closed: from now on teams enter, and files change, only with a reason."""
 
 
 class Withdrawn(Fact, frozen=True, kw_only=True, tag="withdrawn"):
@@ -105,7 +106,7 @@ class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=Tru
     confidence: Annotated[float, msgspec.Meta(ge=0.5, lt=1.0)] = 0.95
     """Probability with which the first places must be right to end a sequential stage early."""
     groups: Annotated[int, msgspec.Meta(ge=1, le=99)] = 1
-    """Number of groups of a round robin."""
+    """Number of groups of a round robin; fewer, if a group would have less than two teams."""
     third_place: bool = False
     """True: the losers of the semi-finals of a single knockout play for place 3."""
     reset: bool = True
@@ -219,7 +220,8 @@ class Played(Fact, frozen=True, kw_only=True, tag="played"):
     record: str = ""
     """File name of the court's record."""
     record_hash: str = ""
-    """Hash of the record's file (`lacoc_server.contest.kept.folder.file_hash`)."""
+    """Hash of the record's file (`lacoc_server.contest.kept.folder.file_hash`); "": the game was
+    played at a court."""
     steer: str = ""
     """Name of the bot that steered teams without one, in a game without a network; "": no team
     needed it, or an older version wrote the fact."""
@@ -240,7 +242,10 @@ class Replaced(Fact, frozen=True, kw_only=True, tag="replaced"):
 
 
 class Replay(Fact, frozen=True, kw_only=True, tag="replay"):
-    """A decision: the results that this game had so far do not count; it is played again."""
+    """A decision: the results that this game had so far do not count; it is played again.
+
+    If the match was void, or a team did not appear, the match is open again.
+    """
 
     pairing: Name
     game: Annotated[int, msgspec.Meta(ge=1)]
@@ -257,7 +262,7 @@ class Voided(Fact, frozen=True, kw_only=True, tag="voided"):
 
 
 class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
-    """A decision: the team did not appear; its opponent wins the match."""
+    """A decision: the team did not appear; its opponent, if it came, wins what is open."""
 
     pairing: Name
     team: Name
@@ -294,10 +299,10 @@ class Resumed(Fact, frozen=True, kw_only=True, tag="resumed"):
 
 
 class Shifted(Fact, frozen=True, kw_only=True, tag="shifted"):
-    """Everything that has not happened yet is postponed by `by_ms`.
+    """All matches that are still to come are postponed by `by_ms`.
 
     For this time no game is called. The earliest times of moved matches that are still to come are
-    postponed too.
+    postponed too. The end of a pause and the end of entries are not.
     """
 
     by_ms: Annotated[int, msgspec.Meta(ge=0, le=86_400_000)]
@@ -416,7 +421,8 @@ def decode(data: bytes) -> tuple[AnyFact, ...]:
     """Read facts from JSON.
 
     Raises:
-        UserError: if the JSON is wrong, or of another version; the message says where.
+        UserError: if the JSON is wrong or of another version (the message says where), or if two
+            different facts have the same id.
     """
     try:
         version = msgspec.json.decode(data, type=dict[str, msgspec.Raw]).get("version")

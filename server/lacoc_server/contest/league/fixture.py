@@ -45,7 +45,7 @@ def _undrawn(contest: Contest, pairing: str) -> Phrase:
 def fixture(
     contest: Contest, view: StageView, match: ContestMatch, game: int, *, stands: bool = False
 ) -> Phrase:
-    """Name a game of a contest: "Semi-final 1, game 2 of 3".
+    """Name a game of a contest: "Semi-final 1, game 2 of 3"; the match, if it has only one game.
 
     Args:
         contest: the contest.

@@ -73,7 +73,8 @@ class ContestMatch(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True
     next_seats: tuple[str, str] | None = None
     """The teams that sit left and right in the next game."""
     winner: Team = None
-    """The winner. NOBODY: decided without a winner, for example a draw. None: not decided."""
+    """The winner. NOBODY: decided without a winner, for example a draw. None: not decided, or not
+    needed (`off`)."""
     loser: Team = None
     how: How = ""
 

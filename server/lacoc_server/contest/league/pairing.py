@@ -38,8 +38,8 @@ class Pairing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     id: str
     """Names the pairing in the contest, such as "finals:w1.3"."""
     section: str
-    """Part of the stage: a group ("a"); winners' bracket ("w"), losers' bracket ("l") or finals
-    ("f") of a knockout; "r" in a Swiss stage."""
+    """Part of the stage: a group ("a"); winners' bracket ("w"), losers' bracket ("l"), finals ("f")
+    or match for third place ("p") of a knockout; "r" if rounds are drawn one by one."""
     round: int
     """Round within its section, from 1."""
     sources: tuple[AnySource, AnySource]

@@ -1,6 +1,7 @@
 """The sheet of a contest: everything that is public about it, for pages and for whoever checks it.
 
-It is computed from the facts alone, so the same facts give the same bytes.
+A published sheet is computed from the facts alone, so the same facts give the same bytes. That of
+the office also has expected times and courts, and when entries close.
 """
 
 from collections.abc import Iterable, Mapping
@@ -63,7 +64,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     version: int = VERSION
     name: str
     open: bool
-    """Whether teams can enter."""
+    """Whether entries are open; once they are closed, a team enters only with a reason."""
     closes_ms: int
     """When entries close, in milliseconds since 1970, UTC; 0: when the organiser closes them, or
     not known, as in a published sheet."""
@@ -89,7 +90,7 @@ class ContestSheet(msgspec.Struct, frozen=True, kw_only=True):
     day: Day
     """Whether games are called now."""
     pause: Break | None
-    """The newest pause or break, which may be over; None: there was none."""
+    """The newest pause or break, which may be over; None: there is none (`newest_break`)."""
     announced: Announced | None
     """The organiser's announcement on all pages; None: there is none."""
     decided: tuple[Decided, ...]
@@ -127,8 +128,8 @@ def sheet(
     Args:
         name: the contest's name.
         contest: the contest.
-        expected: where and when open matches will probably begin, by pairing. A published sheet has
-            none, because it must follow from the facts alone.
+        expected: where and when matches to come will probably begin, by pairing. A published sheet
+            has none, because it must follow from the facts alone.
         closes_ms: when entries close, in milliseconds since 1970, UTC; 0 in a published sheet, for
             the same reason.
     """
@@ -190,7 +191,7 @@ def sheet(
 
 
 def encode(sheet: ContestSheet) -> bytes:
-    """Return a sheet as JSON; the same facts give the same bytes."""
+    """Return a sheet as JSON; equal sheets give the same bytes."""
     return msgspec.json.encode(sheet, order="deterministic")
 
 

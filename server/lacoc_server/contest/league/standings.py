@@ -18,11 +18,11 @@ class Counted(NamedTuple):
     """A match that counts for standings."""
 
     teams: tuple[str, ...]
-    """Both teams; a single team if it had a bye."""
+    """The teams that met; a single team if it had a bye, or if it and its opponent stayed away."""
     scores: tuple[int, ...]
     """Points in all games of the match, by team."""
     winner: int | None
-    """Index of the winner in `teams`; None: a draw."""
+    """Index of the winner in `teams`; None: a draw. An index outside `teams`: all have lost."""
     played: bool = True
     """False: a bye or a walkover."""
 

@@ -134,13 +134,13 @@ class AwayCourt:
 
     @property
     def is_copied(self) -> bool:
-        """Whether this machine has all records of the court, as far as the office knows."""
+        """Whether nothing is left to copy, as far as the office knows, or the court runs here."""
         return self._is_here or self._copy.is_whole
 
     def step(self, office: Office, *, closing: bool = False) -> None:
         """Look at the court once, without waiting.
 
-        Copy its record; if the court is gone, open it on the office's machine.
+        Copy its record; if the court is gone with a game, open it on the office's machine.
 
         Args:
             office: the office.

@@ -82,9 +82,9 @@ def play_live(
     entering: bool = False,
     until_over: bool = False,
 ) -> ContestSheet:
-    """Run a contest at its courts until it is interrupted.
+    """Run a contest at its courts until it is interrupted, or with `until_over` until it is over.
 
-    The courts of the contest file, the gateway and the bots of teams run as processes of their own;
+    The courts of this machine, the gateway and the bots of teams run as processes of their own;
     each is started again if it ends.
 
     Args:
@@ -92,8 +92,8 @@ def play_live(
         opened: called when courts and pages can be reached.
         progress: called with the numbers of decided and of all matches, after each change.
         tell: called with what the organiser must know: a court can't be opened, or goes on at this
-            machine.
-        news: called with a line for each thing that happens: a called game, a result, a lost court.
+            machine; the contest is over; a second machine copies, or is silent.
+        news: called with a line for what happens: a called game, a result, a lost court (`Ticker`).
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.

@@ -63,14 +63,14 @@ class RecordAsk(StandbyAsk, frozen=True, kw_only=True, tag="record"):
 
     match_id: str
     have: dict[str, int]
-    """Length in bytes of each file of the record that is here already, by the file's name."""
+    """Length in bytes of each file of the record that the asking machine has, by its name."""
 
 
 AnyAsk = KnockAsk | StepAsk | PartAsk | RecordAsk
 
 
 class OfficeThere(msgspec.Struct, frozen=True, kw_only=True, tag_field="answer", tag="known"):
-    """Answer to `KnockAsk`: an office runs on this machine, with its generation."""
+    """Answer to `KnockAsk`: an office runs on the machine that was asked, with its generation."""
 
     generation: int
 

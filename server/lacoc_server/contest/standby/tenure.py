@@ -66,7 +66,7 @@ class Tenure:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """Addresses of the machines that were the office, or copy it now.
+        """Addresses of the machines that were the office, or have copied it.
 
         Raises:
             UserError: if they can't be read.

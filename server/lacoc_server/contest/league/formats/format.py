@@ -25,7 +25,7 @@ class Stage(msgspec.Struct, frozen=True, kw_only=True):
     """The rounds that were drawn, in a format that draws rounds one by one."""
 
     def id(self, section: str, round_number: int, number: int) -> str:
-        """Return the id of a pairing of the stage."""
+        """Return the id of a pairing, from its section, its round and its number there, from 1."""
         return f"{self.name}:{section}{round_number}.{number}"
 
     def order(self, usual: tuple[str, ...]) -> tuple[str, ...]:
@@ -47,7 +47,7 @@ class Format(Protocol):
     """True: the team that sat left less often sits left. False: the pairing says who sits left."""
 
     def pairings(self, stage: Stage) -> tuple[Pairing, ...]:
-        """Return all pairings that are fixed so far.
+        """Return all pairings that are fixed so far; their ids are made by `Stage.id`.
 
         Each comes after the pairings from which its teams come.
         """
@@ -60,8 +60,8 @@ class Format(Protocol):
     ) -> bool:
         """Return whether the stage ends before all its rounds are drawn.
 
-        This is called only when all matches of the drawn rounds are decided. `gone` has the teams
-        that have left the contest.
+        This is called only when all matches of the drawn rounds are decided and rounds are left.
+        `gone` has the teams that have left the contest.
         """
 
     def next_round(
@@ -85,7 +85,7 @@ class Format(Protocol):
 
 
 class _AllRounds:
-    """Base of the formats in which all rounds are played."""
+    """Base of formats: all rounds are played, unless the format has an `is_decided` of its own."""
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]

@@ -12,7 +12,7 @@ class Installed(Mapping[str, Format]):
     """All installed formats by name; each is imported when it is asked for."""
 
     def __getitem__(self, name: str) -> Format:
-        """Return a format."""
+        """Return a format, or raise a `KeyError` if none of this name is installed."""
         loaded: Format = plugins.installed(_GROUP)[name].load()
         return loaded
 

@@ -49,7 +49,10 @@ class RoundRobin(DrawnAtOnce):
 
 
 def groups(stage: Stage) -> dict[str, tuple[str, ...]]:
-    """Deal the teams into groups "a", "b", ... in snake order: 1 2 3, 6 5 4, 7 8 9."""
+    """Deal the teams into groups "a", "b", ... in snake order: 1 2 3, 6 5 4, 7 8 9.
+
+    There are fewer groups than planned if one would have less than two teams.
+    """
     number = max(1, min(stage.settings.groups, len(stage.entries) // 2))
     dealt: list[list[str]] = [[] for _ in range(number)]
     for place, team in enumerate(stage.entries):

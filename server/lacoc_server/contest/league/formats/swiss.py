@@ -124,7 +124,7 @@ def _float(before: Mapping[str, int], team: str, others: Sequence[str]) -> str:
 def seat_pair(one: SwissTeam, other: SwissTeam) -> tuple[str, str]:
     """Seat a pair; return who sits left, then who sits right.
 
-    Who sat left less often sits left. If both did equally often, the team that sat right in its
+    The team with the smaller `balance` sits left. If both are equal, the team that sat right in its
     last match sits left. If both sat on the same side, the team that is higher in the seeding sits
     left if its place in the seeding is odd, else right.
     """

@@ -22,10 +22,10 @@ class Break(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None:
-    """Return the break that is on now, or else the newest one; None: there was none.
+    """Return the break that is on now, or else the newest one.
 
     It follows from the facts alone, so its end may be past: whoever shows it compares its end with
-    the clock.
+    the clock. None: there was none, somebody ended it, or the contest is over.
 
     Args:
         contest: the contest.

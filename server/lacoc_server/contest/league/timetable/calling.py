@@ -49,14 +49,14 @@ class GameEnd(NamedTuple):
 
 
 class SeenCourt(NamedTuple):
-    """The state of a court, as the office last heard it."""
+    """The state of a court, as the office knows it now."""
 
     heard_ms: int
     """When the court was heard last, in milliseconds since 1970, UTC; 0: never."""
     call: str = ""
-    """Id of the call whose match the court has; "": none."""
+    """Id of the call whose match the court has; "": none, or not known, as of a silent court."""
     begun: bool = False
-    """Whether play has begun in the match of the call."""
+    """Whether play has begun in the match of the call; False while the court is silent."""
     ended: GameEnd | None = None
     """How the match ended; None: it has no official result."""
     there: bool = False

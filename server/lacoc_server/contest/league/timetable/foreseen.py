@@ -28,7 +28,7 @@ class Foreseen(msgspec.Struct, frozen=True, kw_only=True):
     fixture: Phrase
     """Name of the match: "Semi-final 1"."""
     who: tuple[Phrase, Phrase]
-    """The left and the right side: a team, "winner of Semi-final 1" or "seed 3"."""
+    """The left and the right side: a team, "winner of Semi-final 1", "seed 3" or "to be drawn"."""
 
     @property
     def pairing(self) -> Pairing:

@@ -162,9 +162,9 @@ def due(contest: Contest, formats: Mapping[str, Format]) -> Closed | Drawn | Rou
 
     If entries must be closed before that draw, the fact that closes them is returned.
 
-    The next round of a stage is drawn when all matches of its earlier rounds are decided. A stage
-    that follows another stage is drawn when the other one is over, with the teams that are left.
-    The other stages are drawn one after another, each when all before it are over.
+    The next round of a stage is drawn when all matches of its earlier rounds are decided. Stages
+    are drawn one after another, each when all before it are over, with the teams that are left. A
+    draw that waits for the organiser is returned too: see `waits_for_organiser`.
     """
     for view in contest.stages:
         if view.may_draw:

@@ -25,7 +25,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Ticker:
-    """Makes a line, once, for each thing that happens in the contest.
+    """Makes a line, once, for each draw, game and decision, and for courts that go or come back.
 
     Args:
         facts: the facts that the contest has already; they give no lines.
@@ -44,7 +44,7 @@ class Ticker:
     def newest(
         self, contest: Contest, facts: Sequence[AnyFact], known: OfficeKnowledge
     ) -> Iterator[Phrase]:
-        """Yield a line for each thing that has happened since the last call.
+        """Yield lines for what has happened since the last call; moves and pauses have none.
 
         Args:
             contest: the contest as it is now.

@@ -44,8 +44,8 @@ from lacoc_shared.words import Phrase, say
 
 _SEATS = ("left", "right")
 _LONGEST = 20
-"""A game that seems to have lasted this many times the usual length is ignored: the
-machine's clock was set meanwhile."""
+"""A game that seems to have lasted more than this many times the length assumed before the first
+game is ignored: the machine's clock was set meanwhile."""
 _COUNTED = 15
 """The usual length of a game is computed from so many of the newest games."""
 _STEP_S = 5
@@ -359,8 +359,8 @@ def starts(
     """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
     The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
-    gets none. During a pause without an end, the times are as if it ended now; only organisers see
-    them.
+    gets none; if all have, nothing is yielded. During a pause without an end, the times are as if
+    it ended now; only organisers see them.
 
     Args:
         contest: the contest.
