@@ -43,7 +43,7 @@ def find_robot(name_or_path: str) -> tuple[str, bytes]:
     Raises:
         UserError: if there is no such robot, or its file can't be read.
     """
-    file = _robot_file(name_or_path)
+    file = robot_file(name_or_path)
     return text_of(file.name), read_content(file)
 
 
@@ -75,7 +75,7 @@ def robot_folder(name_or_path: str) -> Path:
     Raises:
         UserError: if there is no such robot.
     """
-    return _robot_file(name_or_path).parent
+    return robot_file(name_or_path).parent
 
 
 def installed_robots() -> tuple[str, ...]:
@@ -83,7 +83,12 @@ def installed_robots() -> tuple[str, ...]:
     return tuple(plugins.installed(GROUP))
 
 
-def _robot_file(name_or_path: str) -> Path:
+def robot_file(name_or_path: str) -> Path:
+    """Return the path of a robot's file.
+
+    Raises:
+        UserError: if there is no such robot.
+    """
     if name_or_path.endswith(".toml"):
         return Path(name_or_path).expanduser()
     return plugins.folder_of(plugins.package(GROUP, "robot", name_or_path)) / "robot.toml"

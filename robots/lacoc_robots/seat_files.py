@@ -1,5 +1,6 @@
 """A contestant's robot and gait files, read from their folders (rules 2)."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -169,7 +170,15 @@ def _newest_in(folder: Path) -> Iterator[Path | None]:
     """
     for patterns in (_POSTURES, _LOCOMOTION):
         paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
-        yield max(paths, key=lambda path: path.stat().st_mtime, default=None)
+        yield max(filter(Path.exists, paths), key=_changed_s, default=None)
+
+
+def _changed_s(path: Path) -> float:
+    """Return when a file was changed [s]; for a file that has just vanished, long ago."""
+    try:
+        return path.stat().st_mtime
+    except OSError:
+        return -math.inf
 
 
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:

@@ -26,6 +26,7 @@ from lacoc_client.workshop.classroom.kept import student_files
 from lacoc_client.workshop.design.requests import GroupAsk, Hello
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.evidence import JoinedClass
+from lacoc_client.workshop.tables.document import document_of
 from lacoc_shared.mistakes import UserError
 
 __all__ = ["closing", "room", "teacher"]
@@ -237,6 +238,26 @@ def test_students_who_move_at_the_same_time_are_in_one_group_each(tmp_path: Path
             assert ann.table.name == groups.find("Crabs").id
 
     run_async(move)
+
+
+def test_a_forgotten_student_s_proposals_go_from_all_tables(tmp_path: Path) -> None:
+    """Also from the table of a group that the student has left before."""
+
+    async def forget() -> None:
+        async with class_of(tmp_path, "Ann", "Ben") as room:
+            ann, ben = room.students.values()
+            await room.groups.join(ann, "Ants")
+            await room.groups.join(ben, "Ants")
+            state = room.groups.find("Ants")
+            table = room.groups._tables[state.id]
+            proposal = {"p1/0.0/1?": '{"by":"Ben","text":"1"}'}
+            table.replace(document_of({**table._document.entries, **proposal}))
+            await room.groups.leave(ben)
+            assert "Ben" in str(table._document.entries)
+            await room.forget(ben)
+            assert "Ben" not in str(room.groups._tables[state.id]._document.entries)
+
+    run_async(forget)
 
 
 def test_one_student_does_not_use_up_what_all_may_change(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lacoc_client.play.own_files import OwnFiles
-from lacoc_robots.library import sample_gait_files
+from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.seat_files import SeatFiles, as_text, gaits_in, gather, remarks, with_level_b
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.gait.tables import PostureTable
@@ -32,6 +32,26 @@ def workbook() -> bytes:
     table = read_gait(POSTURES, "Loco-data.txt")
     assert isinstance(table, PostureTable)
     return write_workbook(table, leg_labels(6))
+
+
+def test_a_robot_in_a_folder_is_read_again(tmp_path: Path) -> None:
+    """A robot that is given as its folder is watched, as one that is given as its file."""
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    file = write(folder / "robot.toml", find_robot("hexapod")[1])
+    own = OwnFiles(str(folder), (), tmp_path)
+    write(file, file.read_bytes() + b"# new", 2000)
+    assert not own.look(), "it may still be being written"
+    assert own.look()
+    assert own.changed == ("robot.toml",)
+
+
+def test_a_link_that_leads_nowhere_is_no_gait(tmp_path: Path) -> None:
+    """A broken link, as a copied folder may have, is passed over."""
+    (tmp_path / "Loco-data.txt").symlink_to(tmp_path / "gone.txt")
+    write(tmp_path / "LocoTra-data.txt", b"")
+    assert [path.name for path in gaits_in(tmp_path)] == ["LocoTra-data.txt"]
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from lacoc_server.contest.league.facts import (
     Called,
     Closed,
     Drawn,
+    Entered,
     Played,
     Replaced,
     Withdrawn,
@@ -165,11 +166,26 @@ def test_a_name_has_one_owner(room: Room, name: str) -> None:
     assert said(room.ask(Apply(secret=CODE, team=name, files=sample()))) == "desk.name-taken"
 
 
+@pytest.mark.parametrize("teams", [0, 1, 2])
+def test_entries_do_not_close_by_themselves_without_teams(tmp_path: Path, teams: int) -> None:
+    """An application after the time for it closes entries only if there are teams to play."""
+    over = "[contest]\nentries_close = 2020-01-01T00:00:00\n"
+    room = Room(tmp_path, stages=f'{over}[stage.cup]\nformat = "round-robin"\n')
+    for team in ("Ants", "Bees")[:teams]:
+        room.store.append(new(Entered, team=team, files="f"))
+    room.ask(Apply(secret=CODE, team="Crabs", files=sample()))
+    assert compute(room.facts, FORMATS).closed == (teams == 2)
+
+
 def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
-    """The link of a declined team opens nothing; whoever takes its name gets another token."""
-    first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    """The link of a declined team opens nothing; whoever takes its name gets another token.
+
+    How to reach the declined team is forgotten.
+    """
+    first = room.ask(Apply(secret=CODE, team="Bees", files=sample(), contact="bee@example.org"))
     assert isinstance(first, OwnEntry)
     room.ask(Decline(secret=KEY, teams=("Bees",)))
+    assert "bee@example.org" not in room.where.contacts.read_text()
     assert said(room.ask(Own(secret=first.token))) == "desk.no-such-team"
     second = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
     assert isinstance(second, OwnEntry)

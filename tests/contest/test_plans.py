@@ -8,7 +8,9 @@ from small_contest import CONTEST
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, new
+from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, Unplanned, new
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_shared.mistakes import UserError
 
 GROUPS = '[stage.groups]\nformat = "round-robin"\n'
@@ -104,6 +106,21 @@ def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:
     ]
     where = folder(tmp_path, "".join(stages))
     assert [len(arena.match.open_levels) for arena in where.games] == [1, 2]
+
+
+def test_a_stage_that_is_in_the_file_no_more_is_not_played(tmp_path: Path) -> None:
+    """A stage that was renamed before its draw is planned under its new name only."""
+    where = folder(tmp_path, GROUPS)
+    with FactStore(where.facts) as store:
+        note_plans(store, where.plans)
+        renamed = folder(tmp_path, GROUPS.replace("stage.groups", "stage.league"))
+        for _ in range(2):
+            note_plans(store, renamed.plans)
+        facts = store.facts()
+        assert [type(fact) for fact in facts] == [Planned, Unplanned, Planned]
+        assert [plan.stage for plan in compute(facts, FORMATS).planned] == ["league"]
+        note_plans(store, where.plans)
+        assert [plan.stage for plan in compute(store.facts(), FORMATS).planned] == ["groups"]
 
 
 def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:

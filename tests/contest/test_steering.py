@@ -1,6 +1,7 @@
 """Tests of a day that is steered from the office: who may, what it says, and that it is proven."""
 
-from typing import cast
+from pathlib import Path
+from typing import Any, cast
 
 import pytest
 from msgspec.structs import replace
@@ -42,6 +43,7 @@ from lacoc_shared.messages.desk import (
     Shift,
     Staff,
     Substitute,
+    TakeOut,
     TokenList,
     Tokens,
     Undraw,
@@ -107,6 +109,48 @@ def test_a_match_that_is_not_drawn_is_moved(room: Room) -> None:
     assert (final.court, final.at_ms) == ("north", NOW_MS + 9_000_000)
     assert said(room.ask(Move(secret=KEY, pairing="finals:w9.1"))) == "decide.no-match"
     assert said(room.ask(Move(secret=KEY, pairing="finals:w1.1", court="x"))) == "desk.no-court"
+
+
+def test_a_match_that_the_draw_does_not_have_was_moved_in_vain(tmp_path: Path) -> None:
+    """With fewer teams than before the moved match is not there; the contest stays honest."""
+    room = Room(tmp_path)
+    room.enter("Ants", "Bees", "Crabs", "Dogs")
+    assert code_of(room.ask(Move(secret=KEY, pairing="cup:a3.2", court="north"))) == "desk.moved"
+    room.ask(TakeOut(secret=KEY, team="Dogs", reason="ill", really=True))
+    room.ask(TakeOut(secret=KEY, team="Crabs", reason="ill", really=True))
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    assert [len(view.matches) for view in compute(room.facts, FORMATS).stages] == [1]
+    assert wrongs(room.facts) == []
+
+
+@pytest.mark.parametrize("kind", ["void", "no-show"])
+def test_a_match_that_was_decided_without_a_game_is_opened_again(room: Room, kind: Any) -> None:
+    """A wrong decision is not final; a result is told to open the match first."""
+    contest = compute(room.facts, FORMATS)
+    match = contest.stages[0].matches[0]
+    team = (match.teams[0] or "") if kind == "no-show" else ""
+    rule = Rule(secret=KEY, kind=kind, pairing=match.pairing.id, team=team, reason="x", really=True)
+    assert effect_of(room.ask(rule))
+    assert compute(room.facts, FORMATS).stages[0].matches[0].decided
+    result = replace(rule, kind="result", game=1, scores=(3, 1), team="")
+    assert said(room.ask(result)) == "decide.not-played"
+    again = replace(rule, kind="replay", game=1, team="")
+    assert effect_of(room.ask(again))
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert (match.state, match.next_game) == ("open", 1)
+    assert wrongs(room.facts) == []
+
+
+def test_a_team_whose_game_was_void_has_played(room: Room) -> None:
+    """No substitute is offered for it, because the draw would not give the place away."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    team = match.next_seats[0]
+    assert steering.places(compute(room.facts, FORMATS), team)
+    about = {"pairing": match.pairing.id, "game": 1, "teams": match.next_seats, "scores": (0, 0)}
+    room.store.append(league_facts.new(Played, outcome="void", record="r.mcap", **about))
+    assert steering.places(compute(room.facts, FORMATS), team) == []
 
 
 def test_the_day_is_paused_shifted_and_goes_on(room: Room) -> None:
@@ -357,6 +401,20 @@ def test_only_the_staff_may(room: Room, asked: AnyRequest) -> None:
     for secret in ("", CODE, room.secrets.team("Ants")):
         assert said(room.ask(replace(asked, secret=secret))) == "desk.not-organiser"
     assert room.facts == before
+
+
+def test_the_office_publishes_nothing_that_the_contest_holds_back(tmp_path: Path) -> None:
+    """Everybody can read the published folder, so it waits until the records may be seen."""
+    held = '[contest]\nreplays = "after-contest"\n'
+    room = Room(tmp_path, stages=held + '[stage.cup]\nformat = "round-robin"\n')
+    room.enter("Ants", "Bees")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    assert said(room.ask(Publish(secret=KEY))) == "desk.holds-back"
+    assert not room.where.published.exists()
+    room.ask(TakeOut(secret=KEY, team="Bees", reason="ill", really=True))
+    assert compute(room.facts, FORMATS).over
+    assert code_of(room.ask(Publish(secret=KEY))) == "desk.published"
 
 
 def test_the_office_publishes(room: Room) -> None:

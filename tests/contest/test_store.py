@@ -11,7 +11,7 @@ import pytest
 from waiting import LIMIT_S
 
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.facts import Closed, Entered, Withdrawn, new
+from lacoc_server.contest.league.facts import Announced, Closed, Entered, Shifted, Withdrawn, new
 from lacoc_shared.mistakes import UserError
 
 APPEND = """
@@ -36,6 +36,20 @@ def appending(path: Path, name: str, count: int) -> subprocess.Popen[str]:
     assert program.stdout is not None
     assert program.stdout.readline() == "open\n"
     return program
+
+
+def test_a_fact_that_could_not_be_read_again_is_not_kept(tmp_path: Path) -> None:
+    """A text that is too long is refused with its limit; all facts can still be read."""
+    with FactStore(tmp_path / "facts.db") as store:
+        store.append(new(Entered, team="Ann"))
+        with pytest.raises(UserError, match=r'"text" is too long: at most 200'):
+            store.append(new(Entered, team="Bob"), new(Announced, text="x" * 201))
+        with pytest.raises(UserError, match="can't be kept"):
+            store.append(new(Shifted, by_ms=-1))
+    with FactStore(tmp_path / "facts.db", by="x" * 65) as store:
+        with pytest.raises(UserError, match=r'"by" is too long: at most 64'):
+            store.append(new(Closed))
+        assert [type(fact) for fact in store.facts()] == [Entered]
 
 
 @pytest.mark.slow

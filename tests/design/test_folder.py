@@ -17,6 +17,7 @@ from lacoc_shared.gait.tables import PostureTable
 from lacoc_shared.gait.text import read_gait
 from lacoc_shared.gait.workbook import INPUT_SHEET
 from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.words import say
 
 GAITS = Path(__file__).parents[1] / "gait" / "files"
 
@@ -69,6 +70,26 @@ def test_gaits_and_robots_are_listed(folder: Folder) -> None:
     ]
     for file in folder.files:
         assert folder.read(file.name).version == file.version
+
+
+def test_a_file_that_is_locked_for_a_moment_is_listed(
+    folder: Folder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Excel locks a file while it saves; the folder reads it again the next time."""
+    path = folder.path / "Loco-data-new.txt"
+    path.write_bytes(file_bytes("Loco-data-new.txt", sample()))
+    read = folder._data
+
+    def locked(path: Path) -> bytes | None:
+        raise UserError(say("design.cannot-read", name=path.name, why="locked"))
+
+    monkeypatch.setattr(folder, "_data", locked)
+    known = {file.name for file in folder.files}
+    assert folder.look() == ()
+    assert {file.name for file in folder.files} == known, "what was read before stays"
+    monkeypatch.setattr(folder, "_data", read)
+    assert folder.look() == (path.name,)
+    assert {file.name for file in folder.files} == {*known, path.name}
 
 
 def test_files_are_read_as_tables(folder: Folder) -> None:

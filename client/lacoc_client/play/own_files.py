@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from lacoc_robots.library import GAIT_NAMES
+from lacoc_robots.library import GAIT_NAMES, robot_file
 from lacoc_robots.seat_files import SeatFiles, gaits_in, gather
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.words import Phrase
@@ -16,7 +16,7 @@ class OwnFiles:
     """The robot and gait files on this machine that a page sends, unless its user chose others.
 
     Args:
-        robot: an installed robot, a folder or a robot file, of which only a file is read again;
+        robot: an installed robot, a folder or a robot file;
             None: the contest's robot.
         gaits: gait files; none: the newest of each kind in `folder`, else those beside the robot.
         folder: where gait files are looked for.
@@ -30,6 +30,7 @@ class OwnFiles:
         self, robot: str | None = None, gaits: Sequence[Path] = (), folder: Path = Path()
     ) -> None:
         self._robot = robot
+        self._robot_file = None if robot is None else robot_file(robot)
         self._gaits = tuple(gaits)
         self._folder = folder
         self._read_as = self._seen = self._saved()
@@ -73,8 +74,7 @@ class OwnFiles:
 
     def _saved(self) -> _Saved:
         paths = [*(self._gaits or gaits_in(self._folder))]
-        if self._robot is not None and self._robot.endswith(".toml"):
-            robot = Path(self._robot).expanduser()
+        if (robot := self._robot_file) is not None:
             paths += [robot, *(robot.parent / name for name in GAIT_NAMES if not paths)]
         saved = []
         for path in paths:

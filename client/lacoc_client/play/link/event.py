@@ -5,12 +5,12 @@ This is public: whoever can open the pages may read it at their path `event.json
 
 import ssl
 import urllib.error
-import urllib.request
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import msgspec
 
+from lacoc_client.play.link.fetch import fetch
 from lacoc_shared.contest.link import Link
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
@@ -19,7 +19,6 @@ from lacoc_shared.network.certificate import fingerprint
 from lacoc_shared.words import Phrase, say
 
 PATH = "event.json"
-_WAIT_S = 10.0
 _MOST_BYTES = 1 << 20
 
 
@@ -94,10 +93,7 @@ def _trusting_all() -> ssl.SSLContext:
 
 def _fetched(link: Link, context: ssl.SSLContext | None) -> bytes:
     try:
-        with urllib.request.urlopen(
-            f"{link.pages}/{PATH}", timeout=_WAIT_S, context=context
-        ) as answer:
-            return bytes(answer.read(_MOST_BYTES))
+        return fetch(f"{link.pages}/{PATH}", context, _MOST_BYTES).data
     except urllib.error.HTTPError as error:
         why = say("link.status", status=error.code)
         raise UserError(say("link.no-event", url=link.pages, why=why)) from None

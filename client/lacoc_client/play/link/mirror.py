@@ -3,19 +3,18 @@
 import ssl
 import threading
 import urllib.error
-import urllib.request
+from contextlib import suppress
 from http import HTTPStatus
-from http.client import HTTPResponse
 from pathlib import Path
-from typing import Self, cast
+from typing import Self
 
 import msgspec
 
+from lacoc_client.play.link.fetch import FetchedFile, TooLong, fetch
 from lacoc_shared.command.replacing import write
 from lacoc_shared.contest.file import picture_path
 
 _EVERY_S = 2.0
-_WAIT_S = 10.0
 _MOST_BYTES = 16 << 20
 _PICTURE_BYTES = 256 << 10
 """A team's picture is not copied if it is longer than this; a usual picture has some 10 kB."""
@@ -71,16 +70,12 @@ class SheetMirror:
                 return
 
     def _copy_sheet(self) -> None:
-        try:
-            with self._get("contest.json", self._tag) as answer:
-                data = answer.read(_MOST_BYTES)
-                tag = answer.headers.get("ETag", "")
-            self._missing = self._pictures_of(data)
+        with suppress(OSError, ValueError):  # also 304: what is here is the newest
+            found = self._get("contest.json", _MOST_BYTES, self._tag)
+            self._missing = self._pictures_of(found.data)
             self._copy_pictures()
-            write(self._path, data)
-            self._tag = tag
-        except (OSError, ValueError):  # also 304: what is here is the newest
-            return
+            write(self._path, found.data)
+            self._tag = found.tag
 
     def _copy_pictures(self) -> None:
         """Copy the pictures of teams that are not copied yet.
@@ -89,11 +84,11 @@ class SheetMirror:
         """
         for files, path in [*self._missing.items()]:
             try:
-                with self._get(f"pictures/{files}.webp") as answer:
-                    data = answer.read(_PICTURE_BYTES + 1)
-                if len(data) <= _PICTURE_BYTES:
-                    path.parent.mkdir(parents=True, exist_ok=True)
-                    write(path, data)
+                found = self._get(f"pictures/{files}.webp", _PICTURE_BYTES)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                write(path, found.data)
+            except TooLong:
+                pass
             except urllib.error.HTTPError as error:
                 if error.code != HTTPStatus.NOT_FOUND:
                     return
@@ -109,13 +104,5 @@ class SheetMirror:
         paths = {team.files: picture_path(self._path, team.files) for team in teams if team.picture}
         return {files: path for files, path in paths.items() if path and not path.exists()}
 
-    def _get(self, name: str, tag: str = "") -> HTTPResponse:
-        """Request a file from the pages by its path.
-
-        Args:
-            name: path of the file.
-            tag: the ETag of this machine's copy; the pages then send only a newer file.
-        """
-        asked = urllib.request.Request(f"{self._pages}/{name}", headers={"If-None-Match": tag})
-        found = urllib.request.urlopen(asked, timeout=_WAIT_S, context=self._context)
-        return cast("HTTPResponse", found)
+    def _get(self, name: str, most_bytes: int, tag: str = "") -> FetchedFile:
+        return fetch(f"{self._pages}/{name}", self._context, most_bytes, tag)

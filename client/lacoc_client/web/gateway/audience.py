@@ -28,7 +28,7 @@ class Audience:
         """Frame counts of the pages that have gone, all together."""
 
     def __len__(self) -> int:
-        return sum(one.is_page for one in self._viewers)
+        return sum(one.is_page for one in list(self._viewers))  # any thread may ask
 
     def add(self, viewer: Viewer) -> None:
         """Add a page; it receives what the court sends from now on, frames at the page's rate."""

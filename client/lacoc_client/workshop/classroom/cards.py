@@ -91,7 +91,7 @@ def card(
         now_s: time in seconds since 1970 (UTC).
     """
     tries = [one.facts for one in evidence if isinstance(one, Tried)]
-    speeds = [facts.speed_mm_s for facts in tries if _FORWARD in facts.keys and _walks(facts)]
+    speeds = [facts.speed_mm_s for facts in tries if facts.keys[-1] == _FORWARD and _walks(facts)]
     outcome = progress.outcomes[progress.phase]
     failed = stuck(tries)
     hand_up_s = (seen.hand_up_s or seen.seen_s) if progress.hand_up else None

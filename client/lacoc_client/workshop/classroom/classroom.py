@@ -153,7 +153,8 @@ class Classroom:
         viewer.send(student.phases_message())
         if (handed := self._handed(student)) is not None:
             viewer.send(handed.message())
-        self.groups.tell(self.groups.of(student))
+        if (state := self.groups.of(student)) is not None:
+            self.groups.tell(state)  # that the student is online
         viewer.send(self.groups.message(student))
         self._tell_card(student)
 

@@ -151,7 +151,11 @@ class Folder:
         for name, modified_ns, size in _listed(self.path):
             known = self._known.get(name)
             if known is None or known[:2] != (modified_ns, size):
-                data = self._seen(self.path / name)
+                try:
+                    data = self._data(self.path / name)
+                except UserError:  # it is locked by another program: look again the next time
+                    now |= {name: known} if known is not None else {}
+                    continue
                 known = _KnownFile(modified_ns, size, None if data is None else _file(name, data))
             now[name] = known
         self._known = now
@@ -165,12 +169,6 @@ class Folder:
         if not fits or name.startswith(".") or len(name) > _LONGEST_NAME or _FORBIDDEN.search(name):
             raise UserError(say("design.bad-name", name=name))
         return self.path / name
-
-    def _seen(self, path: Path) -> bytes | None:
-        try:
-            return self._data(path)
-        except UserError:  # it is locked by another program, or being replaced right now
-            return None
 
     def _data(self, path: Path) -> bytes | None:
         """Read the bytes of a file; return None if it does not exist."""
@@ -230,3 +228,5 @@ def _conflicting(name: str, data: bytes | None) -> Read:
         return _as_read(name, data, read_file(name, data))
     except FileRefused as refused:
         return Read(version=version_of(data), mistakes=tuple(refused.mistakes))
+    except UserError:  # it is no text any more
+        return Read(version=version_of(data))

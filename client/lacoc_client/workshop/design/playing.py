@@ -6,6 +6,7 @@ from pathlib import Path
 from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_shared.command.child import Child
 from lacoc_shared.command.scratch import Scratch
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 
@@ -15,6 +16,8 @@ class Playing:
     def __init__(self) -> None:
         self._folder = Scratch("playing")
         self._child: Child | None = None
+        self._words: list[str] = []
+        """The command line of the child."""
         self._url = ""
         self._lock = threading.Lock()
 
@@ -22,7 +25,8 @@ class Playing:
         """Give files to the page of `lacoc practice`; first start the command if needed.
 
         The start takes some seconds. A page that is open already notices the new files, and asks
-        whether to use them.
+        whether to use them. If there are other kinds of files than before, such as a robot of the
+        student's own, the command is started again, and the page has a new address.
 
         Returns:
             The address of the page, with the page key.
@@ -31,18 +35,28 @@ class Playing:
             UserError: if the command does not become ready.
         """
         with self._lock:
-            paths = self._write(files)
-            if self._child is None or self._child.ended:
-                self._child = Child(self._words(paths), self._folder.path, say("child.court"))
-                self._url = self._child.opened()["url"]
+            words = _command_line(self._write(files))
+            if self._child is None or self._child.ended or words != self._words:
+                self._end()
+                self._child = Child(words, self._folder.path, say("child.court"))
+                self._words = words
+                try:
+                    self._url = self._child.opened()["url"]
+                except UserError:
+                    self._end()
+                    raise
             return self._url
 
     def close(self) -> None:
         """End the running `lacoc practice`, and delete the files that it was given."""
         with self._lock:
-            if self._child is not None:
-                self._child.close()
+            self._end()
             self._folder.close()
+
+    def _end(self) -> None:
+        if self._child is not None:
+            self._child.close()
+            self._child = None
 
     def _write(self, files: SeatFiles) -> list[Path]:
         """Write the robot and gait files; return the paths of robot file, level A and level B."""
@@ -54,11 +68,12 @@ class Playing:
                 path.write_bytes(file.data)
         return paths
 
-    def _words(self, paths: list[Path]) -> list[str]:
-        robot, *gaits = paths
-        words = ["practice", "--json", "--no-open"]
-        if robot.exists():
-            words += ["--robot", str(robot)]
-        for gait in gaits:
-            words += ["--gait", str(gait)] if gait.exists() else []
-        return words
+
+def _command_line(paths: list[Path]) -> list[str]:
+    robot, *gaits = paths
+    words = ["practice", "--json", "--no-open"]
+    if robot.exists():
+        words += ["--robot", str(robot)]
+    for gait in gaits:
+        words += ["--gait", str(gait)] if gait.exists() else []
+    return words

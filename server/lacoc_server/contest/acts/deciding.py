@@ -232,6 +232,12 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
         return new(NoShow, team=wanted.team, **about)
     if wanted.kind == "void":
         return new(Voided, teams=(first, second), **about)
+    if (
+        wanted.kind == "replay"
+        and match.how in ("void", "walkover")
+        and wanted.game == len(match.games) + 1
+    ):  # it was void, or somebody did not come: the match is open again
+        return new(Replay, game=wanted.game, teams=(first, second), **about)
     seats = _seats(match, wanted.game)
     if wanted.kind == "replay":
         return new(Replay, game=wanted.game, teams=seats, **about)
@@ -264,4 +270,6 @@ def _seats(match: ContestMatch, game: int) -> tuple[str, str]:
     if game == match.next_game and match.next_seats is not None:
         return match.next_seats
     numbers = [*played, *([match.next_game] if match.next_game else [])]
+    if not numbers:
+        raise UserError(say("decide.not-played", pairing=match.pairing.id))
     raise UserError(say("decide.no-game", pairing=match.pairing.id, game=game, known=numbers))

@@ -1,6 +1,6 @@
 """What an organiser does with a contest: enter teams, take them out, draw, play without courts."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -19,6 +19,7 @@ from lacoc_server.contest.league import sheet as sheets
 from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.draws import by_lot
 from lacoc_server.contest.league.facts import (
+    TEAMS_LEAST,
     AnyFact,
     Closed,
     Disqualified,
@@ -376,9 +377,17 @@ def check_teams(where: ContestFolder, contest: Contest) -> None:
 def close_in_time(where: ContestFolder, store: FactStore) -> None:
     """Close entries if the contest file names a time for it, and that time has passed.
 
+    They stay open while there are too few teams to play.
+
     Raises:
         UserError: if the fact can't be written.
     """
+
+    def closing(facts: Sequence[AnyFact]) -> list[AnyFact]:
+        contest = compute(facts, FORMATS)
+        here = sum(not team.gone for team in contest.teams)
+        return [] if contest.closed or here < TEAMS_LEAST else [new(Closed)]
+
     end = where.contest.entries_close
     if end is not None and end.astimezone(UTC) <= datetime.now(UTC):
-        store.decide(lambda facts: [] if compute(facts, FORMATS).closed else [new(Closed)])
+        store.decide(closing)

@@ -155,6 +155,7 @@ def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
         if team in view.stage.entries
         and not view.over
         and not any(team in game.teams for match in view.matches for game in match.games)
+        and stage_of(contest.ended_ms.get(team, ("", 0))[0]) != view.name  # also a void game
     ]
 
 

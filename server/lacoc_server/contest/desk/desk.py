@@ -169,10 +169,14 @@ class Desk:
         """Write the contest to its published folder. Other requests are answered meanwhile.
 
         Raises:
-            UserError: if a record or an entry is missing, or something can't be written.
+            UserError: if the contest still holds records back, a record or an entry is missing, or
+                something can't be written.
         """
         with self._one:
-            facts = self._book.facts
+            facts, contest = self._book.facts, self._book.contest
+        replays = self._book.where.contest.replays
+        if replays != "at-once" and not contest.over:  # everybody can read the folder
+            raise UserError(say("desk.holds-back", replays=replays))
         folder = self._book.where.published
         with self._publishing:
             publish(self._book.where, facts, folder)

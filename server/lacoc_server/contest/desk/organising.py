@@ -6,6 +6,7 @@ import msgspec
 
 from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.desk.book import Book
+from lacoc_server.contest.kept.contacts import Contact
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Closed, Drawn, new
 from lacoc_server.contest.league.timetable.steered import steered
@@ -58,7 +59,8 @@ def approve(book: Book, asked: Approve) -> Said:
 def decline(book: Book, teams: Sequence[str]) -> Said:
     """Turn down what teams have handed in, and forget the mistakes in files that were refused.
 
-    A team that is already in the contest keeps its token; any other team loses it. Contacts stay.
+    A team that is already in the contest keeps its token and contact; those of any other team are
+    forgotten, and others may take its name.
 
     Raises:
         UserError: if a team has neither waiting nor refused files. Then no team is declined.
@@ -70,9 +72,10 @@ def decline(book: Book, teams: Sequence[str]) -> Said:
     for team in teams:
         book.note_refused(team, ())
     inside = {team.name for team in book.contest.teams}
-    book.secrets.forget(
-        *(team for team in teams if team not in inside)
-    )  # others may take the names
+    outside = [team for team in teams if team not in inside]
+    book.secrets.forget(*outside)
+    for team in outside:
+        book.contacts.put(team, Contact())
     return Said(said=tuple(say("desk.declined", team=team) for team in teams))
 
 

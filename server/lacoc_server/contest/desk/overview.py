@@ -124,12 +124,13 @@ def _teams(book: Book) -> Iterator[TeamRow]:
     """
     contest = book.contest
     played = [view.stage.entries for view in contest.stages if not view.over]
+    clubs = {team.name: team.club for team in contest.teams}
     for row in _rows(book):
         told = book.contacts.of(row.team)
         yield msgspec.structs.replace(
             row,
             contact=told.reach,
-            club=told.club,
+            club=told.club or clubs.get(row.team, ""),
             substitute=bool(places(contest, row.team)),
             reserve=row.state in ("in", "late") and not any(row.team in one for one in played),
         )

@@ -1,6 +1,7 @@
 """Plays matches without a network, many at a time in worker processes."""
 
 import os
+import re
 import signal
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -75,8 +76,9 @@ def match_id(number: int) -> str:
 
 def first_number(record: Path | None) -> int:
     """Return a free number for a new record: one more than the highest in the folder `record`."""
-    known = [] if record is None else record.glob("simulated-[0-9]*.mcap")
-    return 1 + max((int(path.name.split("-")[1].split(".")[0]) for path in known), default=0)
+    paths = [] if record is None else record.glob("simulated-*.mcap")
+    known = (re.match(r"simulated-(\d+)", path.name) for path in paths)
+    return 1 + max((int(found[1]) for found in known if found), default=0)
 
 
 class EngineLost(UserError):

@@ -2,6 +2,7 @@
 
 import ast
 import hashlib
+import os
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -27,6 +28,7 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
+from lacoc_shared.record.files import sync_folder
 from lacoc_shared.words import Phrase, say
 
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"
@@ -282,8 +284,13 @@ class EntryFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             part = Path(tempfile.mkdtemp(dir=self.path, prefix="part-"))
             for name, data in _files(entry).items():
-                (part / name).write_bytes(data)
+                with (part / name).open("xb") as file:
+                    file.write(data)
+                    file.flush()
+                    os.fsync(file.fileno())  # the fact that names the entry will be on the disk too
+            sync_folder(part)
             part.rename(place)  # so that a folder with this name is always whole
+            sync_folder(self.path)
         except OSError as error:
             if part is not None:
                 shutil.rmtree(part, ignore_errors=True)

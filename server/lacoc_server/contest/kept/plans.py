@@ -11,7 +11,7 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
-from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSettings, new
+from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSettings, Unplanned, new
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
@@ -177,14 +177,18 @@ def game(plan: Planned) -> Arena:
 
 
 def note_plans(store: FactStore, wanted: list[Planned]) -> None:
-    """Append, as facts, the plans that are new or have changed.
+    """Append, as facts, the plans that are new or have changed, and which are no longer there.
 
     Raises:
         UserError: if the plan of a stage that is drawn has changed; nothing is appended then.
     """
 
-    def decision(facts: tuple[AnyFact, ...]) -> Iterator[Planned]:
+    def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
         contest = compute(facts, FORMATS)
+        names = {plan.stage for plan in wanted}
+        for plan in contest.planned:
+            if plan.stage not in names:
+                yield new(Unplanned, stage=plan.stage)
         drawn = {view.name: view.plan for view in contest.stages}
         known = {**{plan.stage: plan for plan in contest.planned}, **drawn}
         for plan in wanted:

@@ -1,5 +1,6 @@
 """The file of a contest's facts: they are appended, and none is ever changed."""
 
+import re
 import sqlite3
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -19,6 +20,8 @@ from lacoc_shared.words import say
 _APPLICATION, _VERSION = 0x4C434654, 1
 """Numbers in the database's header that mark a file of facts: "LCFT" in ASCII, and the version of
 `_TABLES`."""
+_TOO_LONG = re.compile(r"length <= (\d+) - at `\$\.(\w+)`")
+"""How msgspec tells of a text that is too long: the most characters, and the field."""
 _INSERT = "INSERT INTO facts VALUES (?, ?, ?)"
 _TABLES = (
     "CREATE TABLE facts (number INTEGER PRIMARY KEY, at_ms INTEGER NOT NULL, body TEXT NOT NULL)",
@@ -85,8 +88,8 @@ class FactStore:
                 nothing is appended.
 
         Raises:
-            UserError: if the file can't be read or written, or the contest's office is not on this
-                machine; nothing is appended then.
+            UserError: if a fact can't be kept as it is, the file can't be read or written, or the
+                contest's office is not on this machine; nothing is appended then.
         """
         self._decide(decision, machine.check_office)
 
@@ -115,8 +118,7 @@ class FactStore:
                     placed = msgspec.structs.replace(
                         fact, id=_id(number, moves), number=number, at_ms=now_ms, by=self._by
                     )
-                    row = (number, now_ms, msgspec.json.encode(placed).decode())
-                    self._db.execute(_INSERT, row)
+                    self._db.execute(_INSERT, (number, now_ms, _body(placed)))
         except sqlite3.Error as error:
             raise self._problem(error) from None
 
@@ -185,6 +187,23 @@ class FactStore:
         if isinstance(found, UserError):
             return found
         return UserError(say("contest.facts-damaged", file=text_of(self._path), why=str(found)))
+
+
+def _body(fact: AnyFact) -> str:
+    """Write a fact as it is stored.
+
+    Raises:
+        UserError: if it could not be read again, for example because a text is too long.
+    """
+    body = msgspec.json.encode(fact)
+    try:
+        msgspec.json.decode(body, type=AnyFact)
+    except msgspec.ValidationError as error:
+        if found := _TOO_LONG.search(str(error)):
+            most, field = found.groups()
+            raise UserError(say("league.too-long", field=field, most=int(most))) from None
+        raise UserError(say("league.wrong-fact", error=str(error))) from None
+    return body.decode()
 
 
 def _id(number: int, moves: int) -> str:

@@ -264,8 +264,8 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
     matches = {match.pairing.id: match for view in stages for match in view.matches}
     coming = {plan.stage for plan in planned}
     for pairing, about in by_pairing.items():
-        if pairing not in matches and stage_of(pairing) in coming:
-            about = [fact for fact in about if not isinstance(fact, Moved)]  # it was moved early
+        if pairing not in matches:  # it was moved before the draw, which then had fewer teams
+            about = [fact for fact in about if not isinstance(fact, Moved)]
         _note_unused(matches.get(pairing), about, unused)
     return Contest(
         teams=tuple(teams.values()),

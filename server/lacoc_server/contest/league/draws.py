@@ -19,6 +19,7 @@ from lacoc_server.contest.league.facts import (
     RoundDrawn,
     Substituted,
     Undrawn,
+    Unplanned,
     Withdrawn,
     stage_of,
 )
@@ -151,6 +152,11 @@ def drawn_stages(
                 unused[fact.id] = say("league.drawn-already", stage=fact.stage)
             else:
                 plans[fact.stage] = fact
+        elif isinstance(fact, Unplanned):
+            if fact.stage in stages:
+                unused[fact.id] = say("league.drawn-already", stage=fact.stage)
+            else:
+                plans.pop(fact.stage, None)
         elif isinstance(fact, Drawn):
             why = _cannot_draw(fact, plans, stages, teams)
             if why is not None:

@@ -16,6 +16,9 @@ from lacoc_shared.words import Phrase, say
 VERSION = 1
 """Version of the format of facts."""
 
+TEAMS_LEAST = 2
+"""With fewer teams nothing is drawn, so entries do not close by themselves."""
+
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
 Draw = Literal["at-once", "organiser"]
 """When a stage is drawn: "at-once" as soon as its teams are known, "organiser" only after that,
@@ -149,6 +152,12 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """Entries that replace those of the arena file."""
     limits: dict[str, float] = {}
     """Limits for robots that differ from the defaults."""
+
+
+class Unplanned(Fact, frozen=True, kw_only=True, tag="unplanned"):
+    """A stage that is not drawn will not be played: it is in the contest file no more."""
+
+    stage: str
 
 
 class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
@@ -346,7 +355,7 @@ OfDecision = (
 """Facts of decisions by people, most of them with a reason; no record can prove them."""
 OfTeam = Entered | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
-OfStage = Planned | Drawn | Undrawn | RoundDrawn
+OfStage = Planned | Unplanned | Drawn | Undrawn | RoundDrawn
 OfDay = Paused | Resumed | Shifted | Unshifted | Announced
 AnyFact = OfTeam | OfMatch | OfStage | OfDay | TakenOver
 

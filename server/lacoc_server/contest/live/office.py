@@ -12,7 +12,7 @@ from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, Newest
-from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
+from lacoc_server.contest.league.facts import TEAMS_LEAST, AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import (
@@ -38,7 +38,6 @@ from lacoc_shared.words import Phrase
 
 _SEATS = ("left", "right")
 _AGAIN_MS = 1000
-_TEAMS_LEAST = 2
 _BEGUN = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
 
 
@@ -92,6 +91,8 @@ class Office:
         """When a court was last asked about a call, by its id, in milliseconds since 1970, UTC."""
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
+        self._held_files: dict[tuple[str, int], tuple[str, ...]] = {}
+        """Hashes of the files with which these games were refused."""
         self.contest: Contest = self._compute()
         self.known = OfficeKnowledge({name: SeenCourt(0) for name in links}, self._teller.pace, {})
         """What the office knew at the newest step; any thread may read it."""
@@ -144,6 +145,7 @@ class Office:
         seen = {name: self._look(name, link, now_ms) for name, link in self._links.items()}
         self.contest = self._compute()  # another program may have appended facts
         refused = self._answers()
+        self._retry()
         self._append(lambda contest: [*refused, *results(contest, seen)])
         while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
@@ -167,7 +169,7 @@ class Office:
         if self.contest.closed:
             return True
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
-        return over and sum(not team.gone for team in self.contest.teams) >= _TEAMS_LEAST
+        return over and sum(not team.gone for team in self.contest.teams) >= TEAMS_LEAST
 
     def _look(self, name: str, link: CourtLink | None, now_ms: int) -> SeenCourt:
         if link is None:
@@ -214,8 +216,22 @@ class Office:
             if call is None or not isinstance(answer, Refusal) or answer.again:
                 continue
             self.held[call.pairing, call.game] = answer.why
+            self._held_files[call.pairing, call.game] = self._files(call.pairing)
             back.append(new(Recalled, pairing=call.pairing, game=call.game, reason="court refused"))
         return back
+
+    def _retry(self) -> None:
+        """Hold back no game any more whose teams have other files than those that were refused."""
+        for game, files in [*self._held_files.items()]:
+            if self._files(game[0]) != files:
+                del self.held[game], self._held_files[game]
+
+    def _files(self, pairing: str) -> tuple[str, ...]:
+        """Return the hashes of the present files of a match's teams."""
+        files = {team.name: team.files for team in self.contest.teams}
+        matches = (match for view in self.contest.stages for match in view.matches)
+        teams = next((one.teams for one in matches if one.pairing.id == pairing), ())
+        return tuple(files.get(team or "", "") for team in teams)
 
     def _assign(self, link: CourtLink, call: Called) -> Asked[Done]:
         view = next(

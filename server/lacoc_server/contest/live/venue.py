@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.league.contest import Contest
@@ -153,6 +153,14 @@ def _at_same_port(words: list[str], listen: str) -> Callable[[dict[str, Any]], l
     return again
 
 
+class _PlayingBot(NamedTuple):
+    """The process of a team's bot."""
+
+    files: str
+    """Hash of the files that it plays with."""
+    process: "subprocess.Popen[bytes]"
+
+
 class Bots:
     """Runs the bots of teams: a process for each team, which plays at one court after the other.
 
@@ -166,8 +174,8 @@ class Bots:
     def __init__(self, where: ContestFolder, addresses: Mapping[str, str]) -> None:
         self._where = where
         self._addresses = addresses
-        self._playing: dict[tuple[str, str], subprocess.Popen[bytes]] = {}
-        """The running process of each bot, by team and hash of its files."""
+        self._playing: dict[str, _PlayingBot] = {}
+        """The running bots, by team."""
         self._ending: list[subprocess.Popen[bytes]] = []
         self._begun_s: dict[str, float] = {}
 
@@ -175,30 +183,31 @@ class Bots:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for process in (*self._playing.values(), *self._ending):
+        for process in (*(one.process for one in self._playing.values()), *self._ending):
             _end(process)
 
     def follow(self, contest: Contest) -> None:
         """Start the bots of teams that are called for the first time.
 
         If the process of a called team's bot has ended, start it again. If a team has new files,
-        end its bot.
+        end its bot, but not in a game: it plays that to the end.
         """
         bots = {team.name: team for team in contest.teams if team.bot}
-        files = {(team.name, team.files) for team in bots.values()}
-        for one in [one for one in self._playing if one not in files]:
-            process = self._playing.pop(one)
-            process.terminate()
-            self._ending.append(process)
+        called = {name for call in contest.running for name in call.teams if name in bots}
+        for name, (files, process) in [*self._playing.items()]:
+            if name not in called and (name not in bots or files != bots[name].files):
+                del self._playing[name]
+                process.terminate()
+                self._ending.append(process)
         self._ending = [process for process in self._ending if process.poll() is None]
         now_s = time.monotonic()
-        for name in (name for call in contest.running for name in call.teams if name in bots):
-            team = bots[name]
-            running = self._playing.get((name, team.files))
-            gone = running is None or running.poll() is not None
+        for name in called:
+            team, there = bots[name], self._playing.get(name)
+            gone = there is None or there.process.poll() is not None
             if gone and now_s - self._begun_s.get(name, -math.inf) > _AGAIN_S:
                 self._begun_s[name] = now_s
-                self._playing[name, team.files] = self._start(name, team.bot, team.files)
+                process = self._start(name, team.bot, team.files)
+                self._playing[name] = _PlayingBot(team.files, process)
 
     def _start(self, team: str, bot: str, files: str) -> "subprocess.Popen[bytes]":
         program = self._where.entries.path / files / "bot.py"

@@ -36,6 +36,9 @@ from lacoc_shared.network.address import own_address
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.words import Phrase, say
 
+_STAY = ("contest", "secrets")
+"""Files that are not removed here if the office lacks them: an editor may just be replacing one,
+and without them this machine could not take over."""
 _ENTRY_MAX_BYTES = 1 << 26
 _TRIES = 5
 """How often a step is repeated at once if the office's files changed during it."""
@@ -178,7 +181,8 @@ class Follower:
             if wanted in (here.get(name, ""), self._wrong_contest):
                 continue
             if not wanted:
-                path.unlink(missing_ok=True)
+                if name not in _STAY:
+                    path.unlink(missing_ok=True)
                 continue
             data = self._fetch("file", name)
             if hash_of(data) != wanted:

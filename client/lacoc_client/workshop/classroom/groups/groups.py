@@ -112,12 +112,13 @@ class Groups:
                 return  # deleted meanwhile
             known = [one for one in self.states.values() if same_name(one.name) == same_name(read)]
             state = known[0] if known else self._new(read)
-            joined = state.joined(student.name)
+            state.joined(student.name)  # raises an error if the group is full
             if student.name in state.members:
                 return
             document = student.table.fresh()
             await self._leave(student)
-            self.states[state.id] = joined
+            # Somebody in the group may have voted meanwhile.
+            self.states[state.id] = self.states.get(state.id, state).joined(student.name)
             table = self._tables[state.id] if known else self._tables.add(state.id, document)
             student.sit_at(table)
             if not known:
@@ -134,16 +135,17 @@ class Groups:
                 await self._tell()
 
     async def forget(self, student: ClassStudent) -> None:
-        """Remove a deleted student from the group, and the student's proposals from its table."""
+        """Remove a deleted student from the group, and the student's proposals from all tables.
+
+        The tables of groups that the student has left may have proposals too.
+        """
         async with self._moving:
             self._own_allowances.pop(student.name, None)
-            state = self.of(student)
-            if state is None:
-                return
-            await self._leave(student)
-            if state.id in self.states:
-                await self._tables[state.id].forget(student.name)
-            await self._tell()
+            has_left = await self._leave(student)
+            for id_ in [*self.states]:
+                await self._tables[id_].forget(student.name)
+            if has_left:
+                await self._tell()
 
     async def set_role(self, student: ClassStudent, role: Role) -> None:
         """Give a student a role in the group; "": no role."""

@@ -98,10 +98,10 @@ def taken_back(
 ) -> Iterator[AnyFact]:
     """Yield the facts that take games back from their courts.
 
-    Taken back are games that are no longer needed, for example because a team has left; games that
-    were moved to another court or a later time; and games of courts that were not heard for
-    `LOST_MS`. A game that has begun stays with a court that is heard: a court that was killed goes
-    on with it.
+    Taken back are games that are no longer needed, for example because a team has left, also in
+    play; games that were moved to another court or a later time; and games of courts that were not
+    heard for `LOST_MS`. A game that has begun is not moved, and stays with a court that was killed,
+    which goes on with it.
 
     Args:
         contest: the contest.
@@ -114,10 +114,10 @@ def taken_back(
     for call in contest.running:
         court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
-        if court.call == call.id and court.begun:
-            continue
         if call.id not in stays:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
+        elif court.call == call.id and court.begun:
+            continue
         elif move is not None and (
             move.court not in ("", call.court) or move.not_before_ms > now_ms
         ):
