@@ -85,8 +85,7 @@ class MatchState:
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.assigned = setup.assigned
-        """The assigned seats and call; None: no court opened the match, or one of an old version.
-        """
+        """The assigned seats and call; None: no court opened the match, or an older one did."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
