@@ -53,7 +53,7 @@ class RecordArchive:
         self._aside.submit(self._put_away, match_id, writer)
 
     def close(self) -> None:
-        """Wait until all records of finished matches are closed, each in one file."""
+        """Wait until all records of finished matches are closed, and packing them has ended."""
         self._aside.shutdown()
         for packing in self._packing:
             packing.wait()

@@ -1,4 +1,4 @@
-"""A court: the loop that gives a match its beats. No other part reads the monotonic clock.
+"""A court: the loop that gives a match its beats. No other part of it reads the monotonic clock.
 
 The loop, the outbox that sends, the stand tests, and the archive that stores the records of
 finished matches each have a thread. A beat takes what arrived, passes it to the match and records
@@ -84,7 +84,7 @@ class Court:
     Args:
         settings: the settings that the court is started with.
         network: connects the court to others; opened by the caller.
-        left: a match that an earlier court left unfinished, to go on with.
+        left: the match of an earlier court, to go on with, or to show again if it is over.
         office: the desk of the contest's office, if it has one: the court then plays only what the
             office assigns.
         outlooks: answers referees who ask what would happen if play went on.

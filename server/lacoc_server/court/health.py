@@ -121,7 +121,7 @@ class MatchHealth:
         doors: counts of each seat's door before this match.
         speed: speed of the court; at 2 two beats pass in 20 ms.
         before: the newest verdict before the court was killed; None: there is none.
-        resumptions: how many times the match went on after its court was killed.
+        resumptions: how many times the match went on after its court ended and was started again.
     """
 
     def __init__(

@@ -88,7 +88,7 @@ class CourtLog:
             _write(self._log.warning, wrong, match_id=match_id, kind="rules")
 
     def not_packed(self, match_id: str, error: OSError) -> None:
-        """Log that no single file could be made of a record's segments; nothing is lost by that."""
+        """Log that a finished record could not be closed, or its segments not made one file."""
         said = say("log.not-packed", why=str(error))
         _write(self._log.warning, said, match_id=match_id, kind="record")
 

@@ -57,8 +57,8 @@ class Weighing:
             the robot is being tried: call again in the next beat.
 
         Raises:
-            FileRefused: with every mistake of every file, or with what the robot did when it should
-                stand.
+            FileRefused: with the mistakes of all files (`weigh_in`), or with what the robot did
+                when it should stand.
         """
         join_check = self._join_check
         whole, notes = join_check(join, held)

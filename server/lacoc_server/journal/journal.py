@@ -40,6 +40,7 @@ class Journal:
         segment: number of earlier segments of this match's record.
         measure: measures how well the match is held; None for a headless match, in which no beat
             can be late.
+        writer: makes the file of the record.
 
     Raises:
         UserError: if the record can't be created.

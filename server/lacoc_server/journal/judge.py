@@ -164,8 +164,8 @@ class Judge:
         self.worlds = Worlds()
         """Keeps the world that was built last."""
         self.section: Section | None = None
-        """The section (the beats since a snapshot) that is being filled; it has no steps just after
-        the snapshot. None: no robot is on the field.
+        """The section that is being filled: the beats since a snapshot, or since robots were built.
+        It has no steps just after the snapshot. None: no robot is on the field.
         """
         self.difference: Difference | None = None
         """The first difference, at which judging stops; None: none was found so far."""
@@ -195,7 +195,7 @@ class Judge:
         """Judge beat by beat, up to the first difference from the record.
 
         Yields:
-            Each section (the beats between two snapshots), once its last beat is judged.
+            Each section that has beats, once its last beat is judged.
 
         Raises:
             UserError: if the record's messages contradict each other.

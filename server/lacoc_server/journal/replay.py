@@ -1,8 +1,8 @@
 """A record played again: verified by physics, or continued where it ended.
 
 The rules judge the recorded poses of the whole match again (`judge`). Physics is simulated in
-sections, each from one snapshot to the next. So the poses that another kind of machine computes
-can't drift far from the record.
+sections, each from one snapshot, or from newly built robots, to the next snapshot. So the poses
+that another kind of machine computes can't drift far from the record.
 """
 
 import os

@@ -156,7 +156,7 @@ class Worlds:
         """Return the world of a section, in the state in which the section starts.
 
         Raises:
-            ValueError: if the section's snapshot is of another model.
+            ValueError: if the section's snapshot has another length than the model's states.
         """
         if self._world is None or self._number != section.build.number:
             self.keep(section.build, section.build.world())
@@ -170,7 +170,8 @@ def simulate_section(section: Section, worlds: Worlds, bound: float = BOUND) -> 
 
     Args:
         section: the section to simulate.
-        worlds: gives the section's world, which afterwards is in the state of the section's end.
+        worlds: gives the section's world, which afterwards is in the state of the section's end,
+            or of where the simulation stopped.
         bound: largest difference from the record that another arithmetic explains [m, rad]; where
             the difference is larger, the simulation stops.
     """

@@ -138,7 +138,7 @@ def key(match: MatchState, seat: Seat, item: KeySeat) -> Done | Refusal:
     """Apply a digit or [x] to its seat, or refuse it.
 
     Frames show the seat's newest applied and its newest refused command. After an [x] the seat's
-    keys are refused for `restart_freeze_s` of the clock.
+    keys are refused for `restart_freeze_s` of play.
     """
     why = No.NOT_PLAYING
     if match.phase is Phase.PLAYING:

@@ -53,7 +53,8 @@ def weigh_in(
         levels: open levels of control; a gait must have keys at one of them or more.
 
     Raises:
-        FileRefused: with every mistake of every file.
+        FileRefused: with the mistakes of all files. What needs several files (such as whether a
+            robot is too large as it stands) is checked only if the others have no mistake.
     """
     return _weigh_in(robot, postures, locomotion, limits, frozenset(levels))
 
@@ -130,7 +131,7 @@ class JoinCheck:
             The request with the files that are used. If it brought none, also a note about them.
 
         Raises:
-            FileRefused: with every mistake of every file.
+            FileRefused: as `weigh_in` does.
         """
         sample = (self.robot, self.postures, self.locomotion)
         files = (join.robot, join.postures, join.locomotion)

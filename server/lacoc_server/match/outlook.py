@@ -1,7 +1,7 @@
 """What would happen if play went on: a copy of a match in a halt, played without anybody; pure.
 
 The match itself stays as it is. Nobody presses a key in the copy, so each robot goes on with the
-key that it had before the halt; a robot whose seat is silent stands.
+key that it had before the halt. A robot that stands, such as that of a silent seat, keeps standing.
 """
 
 from lacoc_server.match.match import Match

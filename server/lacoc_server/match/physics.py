@@ -82,7 +82,7 @@ class Restorable(Physics, Protocol):
         """Go on from a state that `save` of the same model returned.
 
         Raises:
-            ValueError: if it is of another model.
+            ValueError: if it has another length than the states of this model.
         """
 
 

@@ -333,7 +333,8 @@ def _follow(match: MatchState, over: Phrase | None) -> None:
     """Change the phase after a take-back or a change of the clock, if the game requires it.
 
     A halted match whose game is now over is finished. A finished match whose game is not over any
-    longer is halted, unless its time is up or a winner was declared.
+    longer is halted, unless its time is up or a winner was declared. If it stays finished without a
+    declared winner, the reason of its end becomes the one that is true now.
     """
     if match.phase is Phase.HALTED and over:
         match.finish(over)

@@ -103,7 +103,7 @@ class Staging:
         """Go on from saved places and the saved state of the same robots.
 
         Raises:
-            ValueError: if the state is not of this model.
+            ValueError: if the physics is a record's, or the state has another length than its own.
         """
         if not isinstance(self.physics, Restorable):
             raise ValueError("the poses of a record take the place of physics; they can't change")

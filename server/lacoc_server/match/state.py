@@ -85,7 +85,7 @@ class MatchState:
         self.clock_offset = 0
         """Ticks that a referee took off the time left to play; negative: ticks given."""
         self.assigned = setup.assigned
-        """The assigned seats and call; None: a court of an older version opened the match."""
+        """The assigned seats and call; None: no court opened the match, or an older one did."""
         self.seats = [
             Seat(index, seat.id, seat.colour, seat.pattern, self._assigned_team(seat.id))
             for index, seat in enumerate(self.arena.seats)
@@ -104,7 +104,7 @@ class MatchState:
         self.fault: Fault | None = None
         """The fault that stopped physics in the newest tick; None: none did."""
         self.halted_by = THE_COURT
-        """Whose decision halted the match last; `THE_COURT` for its own, and for a fault."""
+        """In a halt, whose decision began it; `THE_COURT` for its own, for a fault, and else."""
         self.staging = Staging(self.arena, make_physics)
         self.event_count = 0
         """Number of the newest event in the log; the first is 1."""
@@ -139,7 +139,7 @@ class MatchState:
 
     @property
     def is_over(self) -> bool:
-        """True if nothing more is played: the result is official, or no match is assigned."""
+        """True if nothing more is played: the match is official or void, or none is assigned."""
         waits = self.assigned is not None and self.assigned.waits
         return waits or self.phase in (Phase.OFFICIAL, Phase.VOID)
 

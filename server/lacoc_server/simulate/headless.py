@@ -78,7 +78,7 @@ def seated(
         bot: name as in `brains.find`. With "@FOLDER" after it, the bot steers the files in that
             folder: gait files, and `robot.toml` if there is one.
         robot: an installed robot, or a robot file with its gait beside it; a ghost has its own.
-        team: name of the team; None: the folder's name, or the bot's.
+        team: name of the team; None: the folder's or the bot's, or "TEAM's ghost".
 
     Raises:
         UserError: if there is no such bot, robot, folder, gait or record.
@@ -146,11 +146,12 @@ def simulate(
         arena: folder of the arena, if it is not installed.
 
     Returns:
-        The result: official, or void if physics stopped.
+        The result: official; void if physics stopped or a robot did not stay on its start place.
 
     Raises:
         UserError: if the arena's matches have no end, or if the record exists already or can't be
             written.
+        BotFailed: if a bot fails.
         FileRefused: if a player's files have mistakes.
     """
     match = Match(setup, World, arena)
@@ -183,7 +184,8 @@ def to_play(
         pass_beat: lets a beat of the match pass.
 
     Yields:
-        Each beat. If physics stops, the match is not in PLAYING at the end.
+        Each beat. If physics stops, or a robot does not stay on its start place, the match is not
+        in PLAYING at the end.
 
     Raises:
         FileRefused: if a file has mistakes.

@@ -29,7 +29,7 @@ Inputs = list[Input]
 
 
 class BotFailed(UserError):
-    """A team's bot raised an error, took too long, or returned no key; see `failed`."""
+    """A team's bot raised an error, took too long, or returned neither a key nor None."""
 
     CODE = "simulate.bot-failed"
     """The code of the phrase of every `BotFailed`."""
@@ -78,7 +78,8 @@ def opening(joins: Sequence[JoinSeat]) -> Generator[Inputs, Frame, Frame]:
         joins: for each seat, the request of its team to join, with its files.
 
     Returns:
-        The newest frame. Its phase is PLAYING, unless MuJoCo reported a fault.
+        The newest frame. Its phase is PLAYING, unless MuJoCo reported a fault, or a robot did not
+        stay on its start place.
     """
     yield [*joins]
     frame = yield [ReadySeat(join.seat, True) for join in joins]

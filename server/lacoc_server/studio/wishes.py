@@ -58,7 +58,7 @@ def fulfil(
         tell: called with the progress of the search.
 
     Raises:
-        FileRefused: with every mistake of the request's files.
+        FileRefused: with mistakes of the request's files, as `read_files` does.
         UserError: if anything else is wrong with the request.
         WorkerDied: if a process for trials ended.
     """

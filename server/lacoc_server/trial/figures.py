@@ -33,7 +33,8 @@ class Figures:
     drift_deg_s: float
     """Turning speed to the left [deg/s]."""
     drift_deg_m: float | None
-    """Turning to the left [deg] per metre; None if the robot hardly moved."""
+    """Turning to the left [deg] per metre between the ends of the path; None if they are hardly
+    apart."""
     straightness: float | None
     """Distance between the ends of the path, divided by the length of the path; from 0 to 1. None
     if the robot hardly moved."""
@@ -59,8 +60,8 @@ class Figures:
     slip_ratio: float | None
     """`slip_mm_s` divided by the forward speed; None if this speed is almost 0."""
     cost_of_transport: float | None
-    """Work of the motors (without braking), divided by weight times distance; None if the robot
-    hardly moved."""
+    """Work of the motors (without braking), divided by weight times the distance between the ends
+    of the path; None if they are hardly apart."""
     clearance_mm: float
     """95th percentile of the height of all feet above the floor [mm]."""
     clearance_legs_mm: list[float]

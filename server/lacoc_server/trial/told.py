@@ -15,7 +15,7 @@ SHOWN_NAMES = {
 
 
 def told(figures: Figures) -> tuple[tuple[Phrase, str], ...]:
-    """Return, for each figure, its name and its value with the unit."""
+    """Return the names and values of the most important figures, with units, in a fixed order."""
     return (
         (say("trial.figure-speed"), _number(figures.speed_mm_s, "mm/s")),
         (say("trial.figure-lateral"), _number(figures.lateral_mm_s, "mm/s")),

@@ -28,16 +28,17 @@ class Models(NamedTuple):
     whole: Any
     """The model with all geoms. Records name it by its hash, and pictures show it."""
     stepped: Any
-    """The model that MuJoCo steps, with only the geoms that exert forces."""
+    """The model that MuJoCo steps, with only the geoms that can collide or have a mass. If the
+    field has pairs, sensors or tendons, it has all geoms."""
     touching: Any
     """The model of `stepped` with the probes, which robots touch; None if there are no probes."""
     clear: Any
     """The model that is stepped while all robots are far from walls and other obstacles; None if
-    the field has none."""
+    the field has none, or this model can't be made."""
     apart: Any
     """The model that is stepped while all robots are far from each other. In it MuJoCo does not
     search for bodies that may meet: it has a list of the pairs that may, each a robot's geom and a
-    fixed one. None: this model can't be made."""
+    fixed one. None: this model can't be made, or would save no time."""
 
 
 def compile_models(spec: mujoco.MjSpec, robots: int = 0) -> Models:

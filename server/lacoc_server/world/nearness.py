@@ -20,7 +20,7 @@ from lacoc_server.world.robot import Robot, reach_m
 _SKIN_M = 0.03
 """How far a body moves before the model is chosen again [m]."""
 _TICK_M = 0.1
-"""No two robots, and no robot and a wall, come nearer by so much in one tick [m]: 5 m/s."""
+"""Assumed: no two robots, and no robot and a wall, come nearer by so much in a tick [m]: 5 m/s."""
 
 
 class _Obstacle(NamedTuple):

@@ -21,7 +21,7 @@ WIDTH, HEIGHT = 640, 480
 """Size of a picture in pixels."""
 _TILT_DEG, _CLOSE_TILT_DEG = -68.0, -35.0
 _FAR = 1.2
-"""Distance of the camera from the middle, in widths of the field."""
+"""Distance of the camera from the middle, as a multiple of the field's longer side."""
 _LARGE_M = 5.0
 """Size of a field [m] above which the camera looks at the robot in the first seat."""
 _CLOSE_M = 0.9

@@ -91,7 +91,7 @@ def _seat(name: str, seats: Sequence[str]) -> int:
 
 
 def _team_colour(model: Any, geom: int, seats: Sequence[str]) -> int:
-    """Return the index of the seat to which a geom belongs; -1 if its colour is not the robot's.
+    """Return the seat of the robot whose colour a geom has; -1: it has another, or is no robot's.
 
     The colour of a robot is the colour of its body's first geom.
     """

@@ -26,7 +26,7 @@ _NET_FORCE = 3
 
 
 def make_course(robot: RobotSpec, steps: int = SUBSTEPS) -> Course:
-    """Compile the floor for a robot's trials; `steps` as in `SensedWorld`."""
+    """Compile a robot on the floor of its trials; `steps` as in `SensedWorld`."""
     arena = practice_field()
     world = SensedWorld(arena, Entry(robot, Gait()), steps)
     return Course(world, robot, arena)
@@ -67,7 +67,7 @@ class SensedWorld(World):
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def sensed(self) -> Sensed:
-        """Return the measurements of the last tick; a world just copied has no loads yet."""
+        """Return the measurements of the last tick; before its first tick, loads are NaN."""
         data, legs = self.data, self._legs
         feet = self._sensors[:, : 6 * legs].reshape(self._steps, legs, 6)
         load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]

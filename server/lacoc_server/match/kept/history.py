@@ -95,7 +95,8 @@ class History:
         self.state: Any = game.start()
         """The game's state now."""
         self.over: Phrase | None = None
-        """Why the game was over after the newest tick; None: the game was not over."""
+        """Why the game was over after the newest tick; None: the game was not over. A change of a
+        marker by a referee shows here from the next tick on."""
         self._judged: Any = None
         """The newest state for which `over` was computed."""
         self._keeps = True
@@ -146,7 +147,8 @@ class History:
             number: event number of the decision.
 
         Raises:
-            NoSuchState: if the marker has no such state.
+            NoSuchState: if the marker has no such state; another author's game may raise any
+                ValueError.
         """
         self.state = self._game.set(self.state, marker, value)
         if self._keeps:
@@ -251,7 +253,7 @@ class History:
     def load(self, saved: SavedHistory) -> None:
         """Go on from a saved history of the same game.
 
-        After `keep_nothing`, only the state of the game is taken from it.
+        After `keep_nothing`, only the state of the game, and why it is over, are taken from it.
 
         Raises:
             BadMessage: if a state is not one of this game.

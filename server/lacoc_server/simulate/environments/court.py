@@ -49,7 +49,8 @@ class AgentCourt:
         beats: beats of 20 ms in a step.
 
     Raises:
-        UserError: if an argument is wrong, or the arena does not have two seats.
+        UserError: if an argument is wrong, or the arena lacks two seats, level B, a referee or end.
+        FileRefused: if a robot or gait file has mistakes.
     """
 
     def __init__(
@@ -164,7 +165,7 @@ class AgentCourt:
         return digits[number]
 
     def act(self, episode: Episode, seat: int, action: Any) -> Key | None:
-        """Return the key that an action presses; for angles, steer the robot and return None.
+        """Return the key to press for an action, or None (`press`); for angles, steer the robot.
 
         Raises:
             UserError: if the action space does not have the action.

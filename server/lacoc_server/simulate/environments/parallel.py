@@ -35,6 +35,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
     Raises:
         UserError: if one of these is wrong.
+        FileRefused: if a robot or gait file has mistakes.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
@@ -95,7 +96,7 @@ class LacocParallelEnv(ParallelEnv[str, Numbers, Any]):
 
         Args:
             seed: chooses the opening of this episode and of those after it; None: the earlier
-                seed goes on.
+                seed goes on. Without any seed the openings are drawn by chance.
             options: "place" and "late_ticks" replace what the seed would choose.
 
         Returns:

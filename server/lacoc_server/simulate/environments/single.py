@@ -39,6 +39,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
     Raises:
         UserError: if one of these is wrong.
+        FileRefused: if a robot or gait file has mistakes.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
@@ -116,7 +117,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
 
         Args:
             seed: chooses the opening of this episode and of those after it; None: the earlier
-                seed goes on.
+                seed goes on. Without any seed the openings are drawn by chance.
             options: "place", "late_ticks" and "seat" replace what the seed would choose.
 
         Returns:

@@ -143,8 +143,8 @@ class Rows(VectorEnv[Numbers, Any, npt.NDArray[Any]], Generic[OneRow]):
             the infos of all rows, in the form of Gymnasium's vector environments.
 
         Raises:
-            UserError: if no episode has begun, or there is not an action for each row; then no row
-                has changed.
+            UserError: if no episode has begun, or a row has no action or one that the action space
+                lacks; then no row has changed. Also if a bot fails.
         """
         if not hasattr(actions, "__len__") or len(actions) != self.num_envs:
             rows = self.num_envs
@@ -244,6 +244,7 @@ class LacocVectorEnv(Rows[LacocEnv]):
 
     Raises:
         UserError: if one of these is wrong.
+        FileRefused: if a robot or gait file has mistakes.
     """
 
     def __init__(
@@ -275,6 +276,7 @@ class WalkVectorEnv(Rows[WalkEnv]):
 
     Raises:
         UserError: if one of these is wrong.
+        FileRefused: if the robot or gait file has mistakes.
     """
 
     def __init__(

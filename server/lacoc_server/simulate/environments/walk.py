@@ -88,7 +88,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
     joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move to
     these at the robot's own speed (AngMin). An episode ends when the robot falls: its body is
-    tilted by more than 60 degrees. After `seconds` it is cut.
+    tilted by 60 degrees or more. After `seconds` it is cut.
 
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
     "reward_forward" is the mean speed of the step [m/s] in the direction in which the robot stood,
@@ -101,9 +101,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
-    forward [m/s]; 0 if the robot fell on its back. What is seen are figures of the trial: speed
-    ahead and to the left [m/s], turning to the left [rad/s], smallest uprightness, slip of the feet
-    [m/s], and the share of ticks in which the belly carries weight.
+    forward [m/s]; 0 if the body ever tilted by 90 degrees. What is seen are figures of the trial:
+    speed ahead and to the left [m/s], turning to the left [rad/s], smallest uprightness, slip of
+    the feet [m/s], and the share of ticks in which the belly carries weight.
 
     Args:
         robot: an installed robot, or a robot file with its gait beside it.
@@ -119,6 +119,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
     Raises:
         UserError: if one of these is wrong.
+        FileRefused: if the robot or gait file has mistakes.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 (the library's own form)
@@ -205,7 +206,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Numbers, dict[str, Any]]:
-        """Begin an episode; the robot has settled in its first posture.
+        """Begin an episode; if actions are angles, the robot has settled in its first posture.
 
         Args:
             seed: chooses the first posture of this episode and of those after it, near the robot's
@@ -233,9 +234,9 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         """Let the beats of a step pass; if actions are tables, try one with key 2 (forward).
 
         Returns:
-            What is seen; the reward; whether the robot falls (with a table always True); whether
-            time is up or physics stopped; and the parts of the reward, or all measures of a
-            table's trial.
+            What is seen; the reward; whether the episode ends because the robot falls (with a table
+            always True); whether time is up or physics stopped; and the parts of the reward, or all
+            measures of a table's trial.
 
         Raises:
             UserError: if no episode has begun, if it is over, or the action space does not have the

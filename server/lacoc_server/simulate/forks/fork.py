@@ -29,7 +29,7 @@ class Forked:
     beats: int
     """Beats that the fork played itself."""
     decided_beat: int | None
-    """Beat with the decisions of the change; None: the change had no decisions."""
+    """Beat with the decisions of the change; None: it had none, or the fork ended before them."""
     changes: tuple[Phrase, ...]
     """Events that a take-back removed or made new."""
     left_out: int

@@ -64,7 +64,7 @@ def play_fork(job: ForkJob) -> Forked:
 
 
 def attempt_fork(job: ForkJob) -> Forked | Phrase:
-    """Play a fork in a worker process; return the phrase of an error that a user can correct."""
+    """Play a fork; return the phrase of an error that a user can correct, instead of raising it."""
     try:
         return play_fork(job)
     except UserError as error:

@@ -31,7 +31,8 @@ _REACTION_TICKS = BEATS_PER_S // 5
 _OVER = frozenset({Phase.OFFICIAL, Phase.VOID})
 
 Press = Callable[[Match, Frame], Key | None]
-"""Called with the match and its frame after each beat; returns the key for the next beat."""
+"""Called with the match and its frame after each beat of PLAYING; returns the key for the next
+beat, or None."""
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ class ForkLine:
         return found
 
     def see(self, frame: Frame) -> None:
-        """Show the new players the frame of a beat; note the keys that they press."""
+        """In PLAYING, show the new players the frame of a beat; note the keys that they press."""
         match = self.match
         if match.phase is not Phase.PLAYING:
             return

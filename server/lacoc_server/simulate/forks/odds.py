@@ -30,7 +30,7 @@ class MomentOdds(msgspec.Struct, frozen=True, kw_only=True):
     beat: int
     """First beat that the forks play themselves."""
     clock_s: float
-    """Seconds played until this beat."""
+    """The match's clock at this beat [s]."""
     margins: tuple[float, ...]
     """Points of the first seat minus those of the second, at the end of each fork."""
     chance: float

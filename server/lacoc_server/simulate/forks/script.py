@@ -26,7 +26,7 @@ class Script(msgspec.Struct, frozen=True):
 def of_script(file: Script, seat: int) -> Callable[[], Press]:
     """Return a function that makes a new player of a fork's seat: it presses a script's keys.
 
-    The times in the script count from the fork's start.
+    The first time in the script counts from the fork's first beat of play.
 
     Args:
         file: the script.

@@ -100,8 +100,8 @@ def coach(trials: Trials, size: Size | None, seconds: float, seed: int, tell: Te
     Args:
         trials: tries tables for the task.
         size: how many numbers may change; None: only rank the numbers, without repairs and search.
-        seconds: how long to repair and to search [s]. The ranking before the search and the undoing
-            after it do not count.
+        seconds: how long to repair and to search [s]; repairs are not cut short. The ranking before
+            the search and the undoing after it do not count.
         seed: seed of all random numbers.
         tell: called with the progress of the search.
 

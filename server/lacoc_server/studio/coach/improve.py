@@ -56,7 +56,7 @@ def improve(
     """Search for a better table; yield the best table so far after each round of trials.
 
     Args:
-        search: the search, which has already tried the student's own table.
+        search: the search, which has already tried the table that it begins with.
         size: how many numbers may change.
         matters: the numbers of the table, those that matter most first.
         rough: a cheap score, to find tables that may be better.

@@ -40,7 +40,7 @@ class Repaired(NamedTuple):
 
 
 def repair(trials: Trials) -> Iterator[Repaired]:
-    """Repair the mistakes of a table, one after the other, as long as this raises the score.
+    """Repair mistakes of a table, at most `MOST_REPAIRS`, while this raises the score; yield each.
 
     Args:
         trials: tries tables for the task.

@@ -18,10 +18,10 @@ class Improved(NamedTuple):
 
 
 class Search:
-    """The state of a search; it begins by trying the student's own table.
+    """The state of a search; it begins by trying its first table.
 
     Args:
-        table: the student's own angles [deg].
+        table: the first table [deg]: the student's own, or what repairs made of it.
         ranges_deg: lowest and highest angle of each number.
         score: tries tables and returns their scores.
     """

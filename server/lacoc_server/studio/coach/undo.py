@@ -25,7 +25,7 @@ def undo(search: Search, matters: Sequence[Matter], rough: Score) -> Iterator[Im
 
     Args:
         search: the search.
-        matters: how much each number of the student's own table matters.
+        matters: how much each number of the search's first table matters.
         rough: a cheap score, to find the changes that help least.
     """
     best = found = search.best
@@ -68,7 +68,7 @@ def _tried(rough: Score, own: Angles, table: Angles) -> list[int]:
 
 
 def _back(own: Angles, table: Angles, numbers: Sequence[int]) -> Angles:
-    """Return a table with the student's own angles put back in the cells with these indices."""
+    """Return a table with the angles of `own` put back in the cells with these indices."""
     mine = set(numbers)
     return tuple(own[i] if i in mine else angle for i, angle in enumerate(table))
 

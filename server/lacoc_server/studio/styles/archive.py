@@ -151,7 +151,7 @@ class Archive:
         return there is None or there.worth < worth(self._own, angles_deg, figures)
 
     def add(self, angles_deg: Angles, figures: Figures) -> bool:
-        """Keep a gait if it is better than the gait in its map cell; return whether it was kept."""
+        """Keep a gait if the map `would_take` it; return whether it was kept."""
         place = self.grid.place(figures)
         if place is None or not self.would_take(angles_deg, figures):
             return False

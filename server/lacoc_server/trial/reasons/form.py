@@ -144,7 +144,7 @@ class KeyForm:
         return float(self.odd_deg.sum())
 
     def odd_cell(self, leg: int, level: int | None = None) -> TableCell:
-        """Return the cell of a leg that differs most from its partner and mates (`odd_deg`)."""
+        """Return the cell of a leg, or of its joint `level`, with the largest `odd_deg`."""
         odd = self.odd_deg[:, :, leg]
         if level is not None:
             odd = np.where(np.arange(JOINTS_PER_LEG) == level, odd, -1.0)

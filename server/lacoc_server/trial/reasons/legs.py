@@ -199,7 +199,7 @@ def _turn(one: float, other: float) -> float:
 
 
 def _oddest(seen: SeenTrial, leg: int, usual: TableCell, levels: Sequence[int]) -> TableCell:
-    """Return the cell of a leg that differs most from the opposite leg; `usual` if none differs."""
+    """Return the cell of a leg with the largest `KeyForm.odd_deg`; `usual` if all are 0."""
     cells = [seen.form.odd_cell(leg, level) for level in levels]
     oddest = max(cells, key=lambda cell: seen.form.odd_deg[cell])
     return oddest if seen.form.odd_deg[oddest] > 0 else usual

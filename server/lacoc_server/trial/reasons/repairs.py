@@ -184,7 +184,7 @@ def _halves(form: KeyForm) -> Iterator[Repair]:
 
 
 def _odd(form: KeyForm, cell: TableCell, partner: TableCell | None = None) -> Phrase:
-    """Make the part of a sentence that compares a number with that of the opposite leg."""
+    """Make the part of a sentence that compares a number with that of its partner or of a mate."""
     held = form.partner(cell) if partner is None else partner
     return say(
         "explain.odd",

@@ -27,8 +27,8 @@ def same_feet_repairs(form: KeyForm) -> list[Repair]:
     """List the repair of a table in which the same feet carry the robot in all postures.
 
     When these feet swing back, they undo their push. The mistake is that postures are missing, not
-    that a number is wrong: so the repair has the same table. Tables with four or an even larger
-    number of postures are left out: in them a half that should mirror the other is the mistake.
+    that a number is wrong: so the repair has the same table. Tables with 4, 6, 8 and so on postures
+    are left out if legs are opposite: there a half that should mirror the other is the mistake.
     """
     steps = steps_of(form.robot, form.sequence)
     carries = steps.carries[0]
