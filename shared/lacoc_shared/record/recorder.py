@@ -75,7 +75,7 @@ class Recorder(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End the file, and wait until the disk has what was written; again, it does nothing."""
+        """End the file, and wait for the disk. A second call does nothing."""
 
     @abstractmethod
     def leave(self) -> None:

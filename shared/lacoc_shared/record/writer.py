@@ -106,7 +106,7 @@ class RecordWriter(Recorder):
             self._dirty = True
 
     def close(self) -> None:
-        """End the file, and wait until the disk has what was written; again, it does nothing."""
+        """End the file, and wait for the disk. A second call does nothing."""
         if not self._closing.is_set():
             self.end()
         self.leave()
