@@ -1,9 +1,9 @@
 """MuJoCo geoms (shapes) of which the fields of all games are built.
 
-Robots collide only with the floor and the four wall planes. Every other geom is only visible: it
-has no mass and no contacts, so it does not change the physics at all (rules 6). The geoms of a
-marker are named "marker:NAME:STATE", followed by ":PART" if a state has several shapes; they are
-shown while the marker is in that state.
+Of these geoms, robots collide only with the floor and the four wall planes. Every other one is only
+visible: it has no mass and no contacts, so it does not change the physics at all (rules 6). The
+geoms of a marker are named "marker:NAME:STATE", followed by ":PART" if a state has several shapes;
+they are shown while the marker is in that state.
 """
 
 import math

@@ -74,7 +74,7 @@ class RobotView(NamedTuple):
     qy: float
     qz: float
     placed: Place | None = None
-    """Where the robot was put at the beginning of this tick; None if it walked."""
+    """Where the robot was put at the beginning of this tick; None if nothing put it anywhere."""
     touched: tuple[int, ...] = ()
     """Indices of the markers whose probe any part of the robot touches."""
 

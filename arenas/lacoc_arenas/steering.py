@@ -216,7 +216,7 @@ def _key_for(bearing_rad: float, stray_rad: float) -> Key:
 
 
 def straight(sheet: Sheet, seat: int) -> Brain:
-    """Make a brain that walks straight ahead: the simplest bot of every game."""
+    """Make a brain that walks straight ahead: the simplest bot of the games for two."""
 
     def brain(frame: Frame) -> Key | None:
         standing = frame.seats[seat]

@@ -164,8 +164,8 @@ def _stands(robot: str, contest: Path | None, notes: list[Phrase]) -> RobotSpec:
     """Read a robot and check that it can stand.
 
     Raises:
-        FileRefused: with every mistake in the robot's file, or with one mistake that says what the
-            robot did instead of standing.
+        FileRefused: with every mistake in the robot's file, or with what the robot did instead of
+            standing.
     """
     name, data = find_robot(robot)
     spec = _spec(name, data, contest)

@@ -26,6 +26,8 @@ def read_robot_file(name: str) -> RobotSpec:
 def load_gait(file: Path, robot: RobotSpec) -> Gait:
     """Read a gait file of a robot; postures are joined into the sequences of the sample's keys.
 
+    If the file lacks a posture of these, the gait has no level B.
+
     Raises:
         UserError: if the file can't be read.
         FileRefused: with every mistake of the file.

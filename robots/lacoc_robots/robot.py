@@ -36,7 +36,7 @@ class RobotSpec(msgspec.Struct, frozen=True, kw_only=True):
     kp: float
     """Servo stiffness [N m/rad]."""
     kv: float
-    """Servo damping [N m s/rad]; never less than the motor's own damping, `back_emf`."""
+    """Servo damping [N m s/rad]; if the motor's own damping, `back_emf`, is larger, that counts."""
     torque_n_m: float
     """Largest torque of a servo at rest, in either direction."""
     damping: float

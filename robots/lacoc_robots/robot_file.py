@@ -1,6 +1,6 @@
 """Read a robot file: TOML in degrees, metres and kilograms (rules 1, workshop 4-3).
 
-First every entry is checked by itself, then the robot as a whole. A wrong entry becomes NaN. A
+First every entry is checked by itself, then the robot as a whole. A wrong number becomes NaN. A
 check of the whole robot reports a mistake only if all numbers that it needs are right.
 """
 

@@ -37,7 +37,7 @@ def check_name(name: str) -> None:
     """Check that a name is allowed for a court or studio.
 
     Raises:
-        UserError: if it is not made of a-z, 0-9 and hyphens.
+        UserError: if it is not 1 to 32 of a-z, 0-9 and hyphens, or begins with a hyphen.
     """
     if not _NAME.fullmatch(name):
         raise UserError(say("address.court-name", name=name))
@@ -48,7 +48,7 @@ class KeySpace:
     """The key expressions of one court.
 
     Raises:
-        UserError: if the court's name is not made of a-z, 0-9 and hyphens.
+        UserError: if the court's name is not allowed (`check_name`).
     """
 
     court: str

@@ -85,7 +85,7 @@ class Mistake(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class FileRefused(ValueError):
-    """A file is refused as a whole; `mistakes` lists everything that is wrong with it."""
+    """One file or several are refused as a whole; `mistakes` lists what is wrong with them."""
 
     def __init__(self, mistakes: list[Mistake]) -> None:
         super().__init__("\n".join(map(str, mistakes)))

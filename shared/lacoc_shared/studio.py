@@ -26,7 +26,7 @@ class StudioKeys:
     """The key expressions of one studio.
 
     Raises:
-        UserError: if the studio's name is not made of a-z, 0-9 and hyphens.
+        UserError: if the studio's name is not allowed (`keyspace.check_name`).
     """
 
     studio: str

@@ -22,7 +22,7 @@ _DEPTH, _BEAM = 4, 14
 _PATIENCE_S = 30.0
 """A point gained this much later is worth 1 / e of a point now, because plans often fail."""
 _RIVAL = 0.8
-"""The worth of a target is multiplied by this if the other robot will be there first."""
+"""The worth of a flag is multiplied by this if the other robot will be there first."""
 _DECISIVE = 100.0
 """Worth of a corner that ends the match with a win."""
 _REPLAN_TICKS = 4 * BEATS_PER_S
@@ -67,7 +67,7 @@ class _Hunter(ABC):
 
 
 class NearestFlag(_Hunter):
-    """Goes to the nearest standing flag; if all have fallen, to the nearest corner."""
+    """Goes to the nearest standing flag; if all have fallen, to the nearest corner not its own."""
 
     def choose(self, board: tuple[int, ...], scores: tuple[int, ...], poses: list[Pose]) -> int:
         """Return the nearest standing flag; without one, the nearest corner that can be gained."""

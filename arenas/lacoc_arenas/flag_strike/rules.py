@@ -233,7 +233,7 @@ class FlagStrike:
         return first - 1 if first != NEUTRAL and others == [first] * len(others) else None
 
     def gains(self, state: State, seat: int) -> Gains:
-        """Return what would score for this robot next: standing flags, and corners of others.
+        """Return what would score for this robot next: standing flags, and corners not its own.
 
         A corner does not count while the robot is in it.
         """

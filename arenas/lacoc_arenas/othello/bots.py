@@ -14,7 +14,7 @@ from lacoc_shared.seat import BEATS_PER_S
 from .rules import NO_CELL, SIDE, make
 
 _DEPTH, _BEAM = 7, 20
-"""How many cells a route has, and how many routes are kept at each step of the search."""
+"""How many cells a route has at most, and how many routes are kept at each step of the search."""
 _PATIENCE_S = 25.0
 """A disc gained this much later is worth 1 / e of a disc now, because plans often fail."""
 _BLOCKED_M, _BLOCKED_S = 0.35, 12.0

@@ -28,8 +28,8 @@ from lacoc_shared.words import Phrase, say
 app = typer.Typer()
 
 _GONE_S = 120.0
-"""A bot ends when its court has been silent for this long [s]: such a court is not likely to come
-back by itself."""
+"""A bot at an open seat ends when its court has been silent for this long [s], or for the time of
+--wait if that is longer: such a court is not likely to come back by itself."""
 _NAME_MAX = 24
 
 

@@ -1,4 +1,4 @@
-"""Shows a page to one person: starts a gateway for this machine only, and a browser."""
+"""Shows a page: starts a gateway, by default for this machine only, and a browser."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack

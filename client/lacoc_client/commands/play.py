@@ -240,7 +240,7 @@ def _seated(
 
 
 def _await_own_entry(controller: Controller, team: str) -> None:
-    """Wait for a sheet of the match in which this team has its robot.
+    """Wait for a sheet of the match in which this team has its robot, but at most two seconds.
 
     It comes a moment after the answer to the join.
     """

@@ -451,7 +451,7 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
     """Wait until a court has sent a frame and its health, and return the two.
 
     Raises:
-        UserError: if the court sends no health.
+        UserError: if no frame or no health comes in time.
     """
     deadline_s = time.monotonic() + _HEALTH_S
     while view.frame is None or view.health is None:
@@ -462,7 +462,7 @@ def _look(view: Spectator) -> tuple[Frame, Health]:
 
 
 def _history(view: Spectator) -> tuple[Event, ...]:
-    """Return all events of the match so far, in order.
+    """Return the events of the match so far, in order; of very many the newest (`EVENTS_LISTED`).
 
     Wait for them, because they arrive a moment after the connection was opened.
     """

@@ -152,7 +152,8 @@ def kept_child(
         folder: folder for the files with the process's output.
         what: name of the process for messages (`child.*`), such as "The studio".
         again: takes the message of the first start, and returns the words for all later starts.
-        tell: called, from another thread, whenever the process is started again; None: nothing is.
+        tell: called, from another thread, when the process is started again after it was ready;
+            None: nobody is told.
 
     Raises:
         UserError: if the process does not become ready at first.

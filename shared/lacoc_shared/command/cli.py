@@ -71,7 +71,7 @@ class _Commands(UserDict[str, Any]):
 
     @contextmanager
     def only_list(self) -> Iterator[None]:
-        """Return stand-ins for commands, and import nothing, until the `with` block ends."""
+        """Return stand-ins for LACOC's commands, and import none of them, until the block ends."""
         self._only_lists = True
         try:
             yield
@@ -230,7 +230,8 @@ def main(args: Sequence[str] | None = None) -> int:
         The exit code: 0 done, 2 a mistake that the user can correct, 130 Ctrl-C.
 
     Raises:
-        SystemExit: with one of these exit codes, if the command-line library ends the command.
+        SystemExit: with the exit code, if the command-line library ends the command: one of these,
+            or the command's own, such as 1.
         Exception: any other error; it is a bug and is shown with its traceback.
     """
     words.use(language.of_process())

@@ -37,7 +37,7 @@ def connect(
     Raises:
         Damaged: if SQLite can't read the file as a database.
         UserError: if another program has locked the file, or the file is a database of something
-            else, or it can't be opened.
+            else or of another version, or it can't be opened.
     """
     try:
         db = sqlite3.connect(

@@ -59,7 +59,7 @@ def _write(file: FileIO, data: bytes) -> None:
 
 
 def _put_back(kept: Path | None, path: Path) -> None:
-    """Give an older file its own name again if no newer file has taken the name."""
+    """Give an older file its own name again, if that is possible."""
     if kept is not None:
         with contextlib.suppress(OSError):
             os.replace(kept, path)

@@ -69,7 +69,7 @@ class _Writer:
 
 
 def start(as_json: bool) -> None:
-    """Switch the log on. In a log for a person, an error has its stack too.
+    """Switch the log on. If the process crashes, a log for a person has the stacks of its threads.
 
     Args:
         as_json: True: write lines of JSON for a program; False: write words for a person.

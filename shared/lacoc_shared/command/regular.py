@@ -63,10 +63,10 @@ def read(folder: Path, *names: str, most_bytes: int) -> bytes:
 
 
 def names(folder: Path, *below: str) -> list[str]:
-    """List the names of all files in a folder below `folder`, in order; none if it is missing.
+    """List the names of files and folders in a folder below `folder`, in order; none if missing.
 
     Raises:
-        UserError: if it is a file or a link, or can't be read.
+        UserError: if that folder is a file or a link, or can't be read.
     """
     try:
         return sorted(os.listdir(_inside(folder, below)))

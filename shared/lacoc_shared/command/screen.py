@@ -84,7 +84,7 @@ def warn(what: Phrase | str) -> None:
 
 
 def error(what: Phrase | str) -> None:
-    """Print one line that says why the command stops."""
+    """Print why the command stops; several mistakes have a line each."""
     show(Text.assemble((render(say("command.error")), "bold red"), (render(what), "red")), stderr)
 
 

@@ -51,7 +51,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     @property
     def host(self) -> str:
-        """Host name at which clients reach the court.
+        """Host name at which clients reach the court if the office's machine runs it.
 
         "" if the court listens at all addresses and `connect` has no host.
         """
@@ -60,7 +60,7 @@ class ContestCourt(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     @property
     def own_listen(self) -> tuple[str, ...]:
-        """Addresses at which the court listens, on whichever machine runs it."""
+        """Addresses at which the court listens on the machine that usually runs it."""
         return (_any_host(self.elsewhere),) if self.elsewhere else self.listen
 
     def address(self, any_host: str = "127.0.0.1") -> str:

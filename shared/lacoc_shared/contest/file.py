@@ -92,7 +92,10 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def asked(self) -> str:
-        """Name of the court that teams ask where they play: the first on the office's machine."""
+        """Name of the court that teams ask where they play: the first on the office's machine.
+
+        If all courts run elsewhere, it is the first of them.
+        """
         here = (name for name, court in self.courts.items() if not court.elsewhere)
         return next(here, next(iter(self.courts)))
 

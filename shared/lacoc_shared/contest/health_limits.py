@@ -20,7 +20,7 @@ class HealthLimits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     """Largest delay with which a beat of PLAYING may begin [ms]; a delay above 100 ms is not made
     up for."""
     silent_s: _Amount = 5.0
-    """Longest time of PLAYING for which a seat may be silent [s]."""
+    """Longest time of PLAYING for which a seat may be silent, all its silences together [s]."""
     heard_percent: _Percent = 70.0
     """Least share of a seat's repeated keys that must arrive [%]."""
     faults: _Times = 0

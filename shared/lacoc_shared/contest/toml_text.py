@@ -2,7 +2,7 @@
 
 On hostile text `tomllib` raises three kinds of exceptions, and takes seconds and a gigabyte for 32
 KiB of `a.a.a.a`. This module raises one kind of error, and limits the result: nesting is limited,
-and every number fits into 64 bits unless the caller allows more.
+and every integer fits into 64 bits unless the caller allows more.
 """
 
 import re

@@ -17,8 +17,8 @@ def join_postures(table: PostureTable, name: str, keys: Sequence[Sequence[int]])
         keys: for each digit key from 0 on, the digits of the postures of its sequence.
 
     Raises:
-        UserError: if there are too many keys or postures, a key has no posture, or a posture is not
-            in the file.
+        UserError: if there is no key, there are too many keys or postures, a key has no posture, or
+            a posture is not in the file.
     """
     longest = max(map(len, keys), default=0)
     if not 1 <= len(keys) <= MAX_KEYS or longest > MAX_POSTURES_PER_KEY:

@@ -1,8 +1,9 @@
 """The messages of a court on the wire (docs/protocol.md has them as tables).
 
 They are separate from the types that the court uses inside, because they are the contract with
-every other program. All are frozen structs, encoded as msgpack by `codec`. `Frame` and `Command`
-are arrays on the wire, because they are sent 50 and 10 times a second; all others are maps.
+every other program. All are frozen structs, encoded as msgpack by `codec`. `Frame`, `SeatFrame` and
+`Command` are arrays on the wire, because they are sent 50 and 10 times a second, and `TriedKey` is
+one; all others are maps.
 """
 
 from typing import Annotated, Any
@@ -96,8 +97,8 @@ class Command(msgspec.Struct, frozen=True, array_like=True):
     session: int
     """Number that the court gave in its reply to the join."""
     seq: int
-    """Sequence number of the command, from 1 for each seat; 0: no key was pressed yet, the message
-    is only a sign of life."""
+    """Sequence number of the command, from 1 for each seat in each match; 0: no key was pressed
+    yet, the message is only a sign of life."""
     level: int
     key: int
     """0-9, or `RESTART_KEY` for [x]."""

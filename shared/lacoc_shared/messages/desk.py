@@ -56,7 +56,7 @@ class DeskRequest(
     """The fields that all requests to a desk have."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)] = ""
-    """The organiser's key, the event code, or the team's token."""
+    """The organiser's key, the event code, or the token of a team, of the staff or of a referee."""
 
 
 # Everybody
@@ -295,7 +295,7 @@ OfStaff = (
     | Staff
     | Tokens
 )
-"""The requests of the organiser and the staff; `Staff` may be used only by the organiser."""
+"""The requests of organiser and staff, except `Publish`; only the organiser may use `Staff`."""
 AnyRequest = LookAtEvent | Apply | ChangeFiles | Own | CourtDay | Publish | OfStaff
 """Every request to the desk."""
 
@@ -308,7 +308,7 @@ class EventInfo(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     open: bool
-    """Whether teams can apply, and change their files."""
+    """Whether entries are open: teams can apply, and files that they change count at once."""
     closes_ms: int
     """When entries close, in milliseconds since 1970 (UTC); 0: when the organiser closes them."""
     replays: Replays

@@ -236,12 +236,12 @@ def _why_not_listening(one: str) -> Phrase | None:
 
 
 def own_address() -> str:
-    """Return this machine's IP address in its network; 127.0.0.1 if it has no network."""
+    """Return this machine's IP address towards the internet; 127.0.0.1 if no route leads there."""
     return _sender_to("192.0.2.1") or "127.0.0.1"
 
 
 def is_own(name: str) -> bool:
-    """Return whether a host is this machine, so that a message to it does not leave the machine."""
+    """Return whether an IP address or "localhost" is this machine: messages stay on it."""
     return is_loopback(name) or (is_number(name) and _sender_to(name) == name)
 
 

@@ -114,7 +114,7 @@ class Record:
         return _newest(beat, self.scenes)
 
     def until(self, beat: int) -> "Record":
-        """Return the record with only those of its messages that belong to beats up to this one."""
+        """Return the record with its messages of beats up to this one only, without `health`."""
         kept = Record(
             headers=[header for header in self.headers if header.first_beat <= beat],
             inputs={number: items for number, items in self.inputs.items() if number <= beat},

@@ -63,7 +63,7 @@ class Recorder(ABC):
 
     @abstractmethod
     def flush(self) -> None:
-        """Write the data that wait in memory because the disk was full.
+        """Write the data that still wait in memory, for example because the disk was full.
 
         Raises:
             UserError: if the disk does not take them.
@@ -75,11 +75,14 @@ class Recorder(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """End the file, and wait until the disk has everything. A second call does nothing."""
+        """End the file, and wait for the disk. A second call does nothing."""
 
     @abstractmethod
     def leave(self) -> None:
-        """Close the file without its end, because the match is not over and may go on later."""
+        """Close the file without its end, because the match is not over and may go on later.
+
+        A packed file (`PackedWriter`) is removed instead.
+        """
 
     @abstractmethod
     def _write(self, channel: int, beat: int, data: bytes) -> None:

@@ -106,15 +106,15 @@ class RecordWriter(Recorder):
             self._dirty = True
 
     def close(self) -> None:
-        """End the file, and wait until the disk has everything. A second call does nothing."""
+        """End the file, and wait for the disk. A second call does nothing."""
         if not self._closing.is_set():
             self.end()
         self.leave()
 
     def leave(self) -> None:
-        """Close the file without its end, after the disk has everything.
+        """Close the file without its end, after the disk has what was written.
 
-        A match without an end can continue in a new segment.
+        A match without an end can continue in a new segment. Data that wait in memory are lost.
         """
         if self._closing.is_set():
             return

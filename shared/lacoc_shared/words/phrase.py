@@ -35,7 +35,8 @@ def say(code: str, /, **values: str | int | float | Phrase | Sequence[Scalar] | 
 
     Args:
         code: a code of the table, written as a literal.
-        values: all values that the table has for the code; None: the value is left out.
+        values: all values that the table has for the code; None: there is no such value, so that a
+            clause with it is left out.
     """
     return Phrase(code, {name: _value(value) for name, value in values.items()})
 

@@ -90,7 +90,7 @@ def _round_trip(session: Session, view: Spectator) -> Finding:
 def _frames(view: Spectator, seconds: float) -> Finding:
     """Measure how many frames a second arrive, and the longest gap between two of them.
 
-    A frame counts as lost if a newer frame replaced it before it was read. A frame that is sent
+    A frame that a newer one replaced before it was read counts as lost too. A frame that is sent
     again is not counted: a court that can't go on sends its last frame again and again.
     """
     about = say("doctor.frames", court=view.keys.court)

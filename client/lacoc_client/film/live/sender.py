@@ -54,7 +54,7 @@ class Sender:
         self.sent = 0
         """Number of pictures that were sent."""
         self.left_out = 0
-        """Number of pictures that were left out, because the encoder or the server was too slow."""
+        """Number of pictures left out, because the encoder or the server was too slow, or gone."""
         self.failed: OSError | None = None
         """Why the file can't be written; the stream has ended then. None: there was no such
         error."""
@@ -98,7 +98,7 @@ class Sender:
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Drop all pictures that are put into the queue in the next `seconds`."""
+        """Drop the pictures in the queue and those of the next `seconds`; the end stops it."""
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
             self.left_out += self._next() is not None

@@ -43,11 +43,11 @@ def target(wanted: str) -> Target:
     """Return the target that a user named for a live stream.
 
     Args:
-        wanted: `rtmp://...`, `rtmps://...`, `srt://...`; a folder, which gets the files of an HLS
-            stream; or a file that ends in .m3u8, .mp4, .mkv or .ts.
+        wanted: an address that begins with rtmp://, rtmps://, srt://, tcp:// or udp://; a folder,
+            which gets the files of an HLS stream; or a file that ends in .m3u8, .mp4, .mkv or .ts.
 
     Raises:
-        UserError: if it is none of these.
+        UserError: if it is none of these, or the folder of the file does not exist.
     """
     scheme, is_address, _ = wanted.partition("://")
     if is_address:

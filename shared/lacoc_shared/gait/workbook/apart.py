@@ -53,7 +53,7 @@ def read_sheet_apart(data: bytes, name: str) -> WorkbookSheet:
 class _ReaderProcess:
     """The process that reads workbooks, one at a time.
 
-    After a workbook that took much memory it is started again.
+    If a workbook has ended it, it is started again for the next one.
     """
 
     def __init__(self) -> None:

@@ -63,7 +63,7 @@ class WorkbookSheet(msgspec.Struct, frozen=True):
 
     title: str
     rows: list[list[str]]
-    """The rows by number; the first row is 1."""
+    """The rows in order; the first one is row 1."""
     odd: list[tuple[int, int, Odd]]
     """Row and column of each odd cell, counted from 1."""
 
