@@ -67,4 +67,4 @@ def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | N
         pages.kill()
         until(lambda: not pages.is_running() or pages.status() == psutil.STATUS_ZOMBIE)
         until(lambda: is_there(url))
-        assert told == [say("child.again", what=say("child.gateway"))]
+        assert told == [say("child.again", what=say("child.gateway"), why=None)]

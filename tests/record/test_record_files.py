@@ -389,6 +389,28 @@ def test_a_full_disk_loses_nothing(tmp_path: Path, header: MakeHeader, frame: Ma
     assert record.cut is None
 
 
+def test_a_match_that_ends_on_a_full_disk_has_its_end(
+    tmp_path: Path, header: MakeHeader, frame: MakeFrame, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If there is room a moment later, the record's end is written, not lost."""
+    resource = pytest.importorskip("resource")
+    unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+    writer = RecordWriter(tmp_path, header())
+    writer.frame(0, codec.encode(frame(0)))
+
+    def make_room(_: float) -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+
+    monkeypatch.setattr("lacoc_shared.record.writer.time.sleep", make_room)
+    try:
+        full = writer.path.stat().st_size
+        resource.setrlimit(resource.RLIMIT_FSIZE, (full, unlimited[1]))
+        writer.close()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+    assert Record.read(writer.path).cut is None
+
+
 def test_a_disk_that_reports_errors_later_is_heard(
     tmp_path: Path, header: MakeHeader, monkeypatch: pytest.MonkeyPatch
 ) -> None:

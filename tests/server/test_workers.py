@@ -57,6 +57,27 @@ def _has_ended(pid: int) -> bool:
         return True
 
 
+def test_a_job_that_can_not_be_sent_fails_alone(workers: Workers) -> None:
+    """A job whose arguments no other process can get has an error; the next one is done."""
+    assert isinstance(workers.submit(str, lambda: None).exception(), Exception)
+    assert workers.submit(max, 1, 2).result() == 2
+
+
+def test_jobs_fail_while_no_process_can_start_and_are_done_later(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A machine without room for a process loses no thread: the next job tries again."""
+
+    def full(self: object, background: bool) -> None:
+        raise BlockingIOError("Resource temporarily unavailable")
+
+    monkeypatch.setattr(workers_module._WorkerProcess, "__init__", full)
+    with Workers(1) as few:
+        assert isinstance(few.submit(max, 1, 2).exception(), BlockingIOError)
+        monkeypatch.undo()
+        assert few.submit(max, 1, 2).result() == 2
+
+
 def test_a_job_has_a_time_limit() -> None:
     """A job that takes longer than the limit fails with `WorkerDied`."""
     with Workers(1, limit_s=1.0) as workers, pytest.raises(WorkerDied):

@@ -1,9 +1,11 @@
 """Processes that a command starts and ends for itself."""
 
 import os
+import subprocess
 import threading
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -11,7 +13,7 @@ from waiting import until
 
 from lacoc_shared.command.child import kept_child
 from lacoc_shared.mistakes import UserError
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 pytestmark = [
     pytest.mark.slow,
@@ -54,3 +56,27 @@ def test_a_process_that_says_why_it_can_not_start_is_not_tried_again(tmp_path: P
         kept_child(["studio", "--nonsense"], tmp_path, say("child.studio"), lambda _: []),
     ):
         pass
+
+
+def test_a_process_that_can_not_be_started_again_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A machine that has no room for a process for a moment does not end the keeping."""
+    words = ["studio", "--listen", "127.0.0.1:0", "--json", "--jobs", "1"]
+    told: list[Phrase] = []
+    with kept_child(words, tmp_path, say("child.studio"), lambda _: words, told.append):
+        (first,) = _children()
+        start = subprocess.Popen
+        failed: list[int] = []
+
+        def full(*arguments: Any, **options: Any) -> Any:
+            if not failed:
+                failed.append(1)
+                raise BlockingIOError("Resource temporarily unavailable")
+            return start(*arguments, **options)
+
+        monkeypatch.setattr(subprocess, "Popen", full)
+        first.kill()
+        until(lambda: [one for one in _children() if one.pid != first.pid])
+        assert failed
+    assert told == [say("child.again", what=say("child.studio"), why=None)]

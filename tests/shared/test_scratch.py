@@ -1,5 +1,6 @@
 """Folders of programs that have gone are removed, and nothing else is."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from lacoc_shared.command import scratch
+from lacoc_shared.command import holding, scratch
 from lacoc_shared.command.scratch import Scratch, sweep
 
 _HOLDS = """
@@ -42,6 +43,20 @@ def test_a_folder_ends_with_its_block(tmp_path: Path) -> None:
         if os.name == "posix":
             assert folder.stat().st_mode & 0o777 == 0o700
     assert [*tmp_path.iterdir()] == []
+
+
+def test_without_locks_no_folder_is_taken_for_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a file system without locks nobody can tell whether a folder's program runs."""
+
+    def none(*_: object) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(holding, "_lock", none)
+    with Scratch("x", tmp_path) as folder, Scratch("y", tmp_path) as other:
+        assert folder.is_dir()
+        assert other.is_dir()
 
 
 @pytest.mark.slow

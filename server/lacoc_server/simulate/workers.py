@@ -128,44 +128,52 @@ class Workers:
             thread.join(_END_S)
 
     def _run(self) -> None:
-        child = self._child()
+        child: _WorkerProcess | None = None
+        with contextlib.suppress(OSError):  # no process can start now: the first job tries again
+            child = self._child()
         while (job := self._jobs.get()) is not None:
             if self._closing or not job.result.set_running_or_notify_cancel():
                 job.result.cancel()
                 continue
             child = self._do(job, child)
-        self._children.discard(child)
-        child.end()
+        if child is not None:
+            self._children.discard(child)
+            child.end()
 
-    def _do(self, job: _WorkerJob, child: "_WorkerProcess") -> "_WorkerProcess":
+    def _do(self, job: _WorkerJob, child: "_WorkerProcess | None") -> "_WorkerProcess | None":
         """Run a job in a process, and set the result of its future.
 
         Returns:
-            The process; a new one if it ended.
+            The process; a new one if it ended. None: no process can be started.
         """
         left = self._again
         while True:
             try:
-                if not child.process.is_alive():  # the process died between two jobs
+                if child is None or not child.process.is_alive():  # it died between two jobs
                     child = self._replaced(child)
                 right, found = child.call(job.function, job.arguments, self._limit_s)
             except WorkerDied as error:
                 if not self._closing:
-                    child = self._replaced(child)
+                    with contextlib.suppress(OSError):  # else the next job tries again
+                        child = self._replaced(child)
                 if left == 0 or self._closing or error.last_words is not None:
                     job.result.set_exception(error)
                     return child
                 left -= 1
                 continue
+            except Exception as error:  # no process can start, or the job can't be sent to one
+                job.result.set_exception(error)
+                return child
             if right:
                 job.result.set_result(found)
             else:
                 job.result.set_exception(WorkerFailed(found))
             return child
 
-    def _replaced(self, child: "_WorkerProcess") -> "_WorkerProcess":
-        self._children.discard(child)
-        child.end()
+    def _replaced(self, child: "_WorkerProcess | None") -> "_WorkerProcess":
+        if child is not None:
+            self._children.discard(child)
+            child.end()
         return self._child()
 
     def _child(self) -> "_WorkerProcess":

@@ -1,13 +1,14 @@
 """A `lacoc` process, such as a court or a studio, that a command starts and ends for itself."""
 
 import json
+import math
 import os
 import subprocess
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,8 @@ _CLOSE_S = 10.0
 _LOOK_S = 0.02
 _STARTS = 3
 """How often a process is started again if it is killed before it is ready; for `kept_child`."""
+_TOLD_S = 60.0
+"""Shortest time between two reports that a process ended for the same reason [s]."""
 _AGAIN_S = 1.0
 """Time between two checks whether the process has ended and must be started again [s]."""
 
@@ -103,6 +106,11 @@ class Child:
         if self._process.poll():
             screen.note(_text(self._complained))
 
+    @property
+    def complaint(self) -> str:
+        """The error with which the process ended; "": it runs, or something killed it."""
+        return "" if self.was_killed or not self.ended else _text(self._complained).strip()
+
     def close(self) -> None:
         """End the process that was started."""
         assert self._process.stdin is not None
@@ -163,11 +171,16 @@ def kept_child(
 
     def keep(words: list[str]) -> None:
         nonlocal process
+        told, told_s = "", -math.inf
         while not ending.wait(_AGAIN_S) and not process.ended_for_good:
-            if process.ended:
+            if not process.ended:
+                continue
+            why, now_s = process.complaint, time.monotonic()
+            if tell is not None and (why != told or now_s - told_s > _TOLD_S):
+                told, told_s = why, now_s
+                tell(say("child.again", what=what, why=why or None))
+            with suppress(OSError):  # no process can be started now: it is tried again
                 process = Child(words, folder, what)
-                if tell is not None:
-                    tell(say("child.again", what=what))
 
     with ExitStack() as stack:
         stack.callback(lambda: process.close())

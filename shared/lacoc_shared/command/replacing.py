@@ -5,8 +5,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 
-def write(path: Path, content: bytes, *, secret: bool = False) -> None:
-    """Write a file in place of an older one; a secret file can at no time be read by other users.
+def write(path: Path, content: bytes, *, secret: bool = False, lasting: bool = False) -> None:
+    """Write a file in place of an older one.
+
+    Args:
+        path: the file.
+        content: its new content.
+        secret: whether other users can at no time read it.
+        lasting: whether it is on the disk when this call returns, so that a power cut does not
+            bring the older one back. That takes some milliseconds.
 
     Raises:
         OSError: if it can't be written.
@@ -15,8 +22,13 @@ def write(path: Path, content: bytes, *, secret: bool = False) -> None:
     def write_part(part: Path) -> None:
         with open(part, "xb", opener=_for_its_owner if secret else None) as file:
             file.write(content)
+            if lasting:
+                file.flush()
+                os.fsync(file.fileno())
 
     replace(path, write_part)
+    if lasting:
+        sync_folder(path.parent)
 
 
 def replace(path: Path, write_part: Callable[[Path], object]) -> None:
@@ -32,3 +44,18 @@ def replace(path: Path, write_part: Callable[[Path], object]) -> None:
 
 def _for_its_owner(name: str, flags: int) -> int:
     return os.open(name, flags, 0o600)
+
+
+def sync_folder(folder: Path) -> None:
+    """Write the folder's list of names to the disk, so that a new file survives a power cut.
+
+    Raises:
+        OSError: if the disk refuses. If folders can't be opened (Windows), nothing is done.
+    """
+    if os.name != "posix":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -77,11 +77,12 @@ def _locked(folder: Path) -> BinaryIO:
 def _is_left(folder: Path) -> bool:
     """Return whether a folder was made by this module for a program that has ended since.
 
-    A folder without the lock file was made by somebody else, whatever its name is.
+    A folder without the lock file was made by somebody else, whatever its name is. Where a file
+    system has no locks, every folder stays.
     """
     try:
-        with (folder / _OWNER).open("rb+") as lock:
-            return hold(lock)
+        with (folder / _OWNER).open("rb+") as lock, (folder / _OWNER).open("rb+") as other:
+            return hold(lock) and not hold(other)
     except FileNotFoundError:
         made = [*folder.iterdir()]
         was_made = [path.name for path in made] == [_MAKING]

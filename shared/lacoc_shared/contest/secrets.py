@@ -160,7 +160,7 @@ class Secrets:
             try:
                 with _alone(self._path.with_name(f".{self._path.name}.lock")):
                     text = msgspec.json.format(msgspec.json.encode(changed(self._read())))
-                    write(self._path, text + b"\n", secret=True)
+                    write(self._path, text + b"\n", secret=True, lasting=True)
             except OSError as error:
                 path, why = str(self._path), error.strerror or str(error)
                 raise UserError(say("command.cannot-write", path=path, why=why)) from None

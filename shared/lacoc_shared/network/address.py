@@ -10,6 +10,7 @@ import re
 import socket
 import ssl
 from collections.abc import Sequence
+from contextlib import suppress
 
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.public import is_loopback, is_number
@@ -236,8 +237,21 @@ def _why_not_listening(one: str) -> Phrase | None:
 
 
 def own_address() -> str:
-    """Return this machine's IP address towards the internet; 127.0.0.1 if no route leads there."""
-    return _sender_to("192.0.2.1") or "127.0.0.1"
+    """Return this machine's IP address towards the internet.
+
+    If no route leads there, as in a hall with a switch alone, the address is the one that the
+    machine's name has; if that has none, 127.0.0.1.
+    """
+    return _sender_to("192.0.2.1") or _by_name() or "127.0.0.1"
+
+
+def _by_name() -> str:
+    """Return the IP address of this machine's own name; "": it has none but loopback ones."""
+    with suppress(OSError):
+        for *_, at in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET):
+            if not is_loopback(str(at[0])):
+                return str(at[0])
+    return ""
 
 
 def is_own(name: str) -> bool:

@@ -1,6 +1,5 @@
 """The files of a record: segments while a match runs; afterwards one compressed, packed file."""
 
-import os
 import re
 from pathlib import Path
 
@@ -74,18 +73,3 @@ def is_held(path: Path) -> bool:
             return not hold(file)
     except FileNotFoundError:  # it was packed just now
         return True
-
-
-def sync_folder(folder: Path) -> None:
-    """Write the folder's list of names to the disk, so that a new file survives a power cut.
-
-    Raises:
-        OSError: if the disk refuses. If folders can't be opened (Windows), nothing is done.
-    """
-    if os.name != "posix":
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -9,6 +9,7 @@ from mcap.writer import Writer
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.command.holding import hold
+from lacoc_shared.command.replacing import sync_folder
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.recorder import CHANNELS, HEADER, Recorder, no_record
@@ -100,7 +101,7 @@ class PackedFile:
         if not self._has_name:
             self.unfinished.rename(self._path)
             self._has_name = True
-            files.sync_folder(self._path.parent)
+            sync_folder(self._path.parent)
 
     def discard(self) -> None:
         """Remove the file if it has no name yet; do nothing if the disk does not allow it."""

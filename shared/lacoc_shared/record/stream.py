@@ -27,6 +27,7 @@ from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.record.protocol_1 import read_event
 from lacoc_shared.record.schema import BEAT_NS, FORMAT, KINDS, PROFILE, Result
+from lacoc_shared.record.values import lists_and_maps
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, say
 
@@ -63,8 +64,6 @@ _VALUES, _VALUES_RATIO = 500_000, 0.5
 is a single byte in a message, and 60 bytes in memory."""
 _COUNTED = frozenset(KINDS) - {"/lacoc/frame", "/lacoc/snapshot"}
 """Topics whose messages may have values of any kind."""
-_LISTS_AND_MAPS = bytes([*range(0x80, 0xA0), *range(0xDC, 0xE0)])
-"""The bytes with which a list or a map begins in msgpack; no ASCII character has these values."""
 _NAME_MOST = 200
 """Longest name of a team in a record [characters]; courts accept shorter ones only."""
 
@@ -116,7 +115,7 @@ def walk_messages(path: Path, take: Take) -> Stop | None:
     def decoded(topic: str, beat: int, data: bytes) -> None:
         nonlocal values
         if topic in _COUNTED:
-            values -= len(data) - len(data.translate(None, _LISTS_AND_MAPS))
+            values -= lists_and_maps(data)
             if values < 0:
                 raise codec.BadMessage("it has more values than a match")
         take(topic, beat, data, _decode(path, topic, data))

@@ -9,6 +9,7 @@ header, and uses `mcap.records` for all else.
 import os
 import struct
 import threading
+import time
 from pathlib import Path
 
 from mcap.data_stream import RecordBuilder
@@ -19,12 +20,17 @@ from mcap.writer import MCAP0_MAGIC
 
 from lacoc_shared import __version__, codec
 from lacoc_shared.command.holding import hold
+from lacoc_shared.command.replacing import sync_folder
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.recorder import CHANNELS, HEADER, Recorder, no_record
 from lacoc_shared.record.schema import BEAT_NS, KINDS, PROFILE, Header
 from lacoc_shared.words import say
 
+_ROOM_S = 2.0
+"""How long `close` waits for room on a full disk [s]: without its end, a record counts as that of a
+match that goes on."""
+_LOOK_S = 0.05
 SYNC_S = 1.0
 """Time between two writes to the disk (fsync) [s]: a power cut loses at most so much."""
 
@@ -109,6 +115,10 @@ class RecordWriter(Recorder):
         """End the file, and wait for the disk. A second call does nothing."""
         if not self._closing.is_set():
             self.end()
+            until_s = time.monotonic() + _ROOM_S
+            while self._backlog and time.monotonic() < until_s:  # the disk is full: room may come
+                time.sleep(_LOOK_S)
+                self._put(b"")
         self.leave()
 
     def leave(self) -> None:
@@ -151,7 +161,7 @@ class RecordWriter(Recorder):
     def _sync(self) -> None:
         """Write the file to the disk (fsync) once a second, on a thread of its own."""
         try:
-            files.sync_folder(self.path.parent)
+            sync_folder(self.path.parent)
         except OSError as error:
             self._sync_failed(error)
         while not self._closing.wait(SYNC_S):

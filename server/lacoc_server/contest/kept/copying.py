@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from enum import Enum
 from pathlib import Path
 
+from lacoc_shared.command.replacing import sync_folder
 from lacoc_shared.messages.office import Copied
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
@@ -80,7 +81,7 @@ def _finish(folder: Path, match_id: str, packed: Path) -> None:
     unfinished.rename(packed)
     for segment in files.segment_paths(folder, match_id):
         segment.unlink(missing_ok=True)
-    files.sync_folder(folder)
+    sync_folder(folder)
 
 
 def continues(match_id: str, have: Mapping[str, int], part: Copied) -> bool:

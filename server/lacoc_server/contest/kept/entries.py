@@ -23,12 +23,12 @@ from lacoc_robots.stand_test import try_standing
 from lacoc_server.contest.kept.team_picture import small_picture
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_shared.command import regular
+from lacoc_shared.command.replacing import sync_folder
 from lacoc_shared.contest.file import ENTRY_HASH, PICTURE
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import FileRefused, UserError, text_of
-from lacoc_shared.record.files import sync_folder
 from lacoc_shared.words import Phrase, say
 
 _ROBOT, _PROGRAM, _BOT = "robot.toml", "bot.py", "entry.json"

@@ -37,7 +37,7 @@ class EventCode:
         """
         code = new_code()
         try:
-            write(self._path, code.encode())
+            write(self._path, code.encode(), lasting=True)
         except OSError as error:
             why = error.strerror or str(error)
             raise UserError(say("command.cannot-write", path=str(self._path), why=why)) from None

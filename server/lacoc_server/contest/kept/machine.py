@@ -63,7 +63,7 @@ def save(path: Path, machine: Machine) -> None:
         UserError: if the file can't be written.
     """
     try:
-        write(path, msgspec.json.encode(machine))
+        write(path, msgspec.json.encode(machine), lasting=True)
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("command.cannot-write", path=text_of(path), why=why)) from None

@@ -66,7 +66,7 @@ def court(
             try:
                 _check_free(where.contest, name, listen)
                 again = _at_same_port(words, listen[0])
-                opened = stack.enter_context(kept_child(words, folder, what, again))
+                opened = stack.enter_context(kept_child(words, folder, what, again, tell))
                 break
             except UserError as error:
                 if time.monotonic() > end_s:

@@ -7,6 +7,7 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from lacoc_shared.command.replacing import sync_folder
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -35,16 +36,5 @@ def replace_file(path: Path, data: bytes) -> None:
             written.unlink()
         why = error.strerror or str(error)
         raise UserError(say("design.cannot-write", name=path.name, why=why)) from None
-    _sync_folder(target.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Force the folder's list of files to the disk, on systems that can do that."""
-    if os.name != "posix":
-        return
-    with suppress(OSError):
-        descriptor = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)
+    with suppress(OSError):  # the file is written, whatever the folder says
+        sync_folder(target.parent)

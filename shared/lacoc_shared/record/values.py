@@ -1,0 +1,55 @@
+"""Counts the lists and maps in msgpack, without unpacking it."""
+
+from collections.abc import Mapping
+
+_LISTS_AND_MAPS = bytes([*range(0x80, 0xA0), *range(0xDC, 0xE0)])
+"""The bytes with which a list or a map begins in msgpack; texts and files may have them too."""
+_FEW = 100
+_FIXED: Mapping[int, int] = {
+    **dict.fromkeys((0xCC, 0xD0), 1),
+    **dict.fromkeys((0xCD, 0xD1, 0xDC, 0xDE, 0xD4), 2),
+    0xD5: 3,
+    **dict.fromkeys((0xCA, 0xCE, 0xD2, 0xDD, 0xDF), 4),
+    0xD6: 5,
+    **dict.fromkeys((0xCB, 0xCF, 0xD3), 8),
+    0xD7: 9,
+    0xD8: 17,
+}
+"""By head: how many bytes follow it, if always as many do. For a list or map these are its
+length."""
+_SIZED: Mapping[int, tuple[int, int]] = {
+    **dict.fromkeys((0xC4, 0xD9), (1, 0)),
+    **dict.fromkeys((0xC5, 0xDA), (2, 0)),
+    **dict.fromkeys((0xC6, 0xDB), (4, 0)),
+    0xC7: (1, 1),
+    0xC8: (2, 1),
+    0xC9: (4, 1),
+}
+"""By head of a text, of bytes and of an extension: size of its length [bytes], and what follows
+besides so many bytes."""
+
+
+def lists_and_maps(data: bytes) -> int:
+    """Return how many lists and maps are in msgpack; at least as many as there are.
+
+    If few bytes could begin one, all of them are counted.
+    """
+    most = len(data) - len(data.translate(None, _LISTS_AND_MAPS))
+    return most if most <= _FEW else _counted(data)
+
+
+def _counted(data: bytes) -> int:
+    at, found, end = 0, 0, len(data)
+    while at < end:
+        head = data[at]
+        at += 1
+        if 0x80 <= head < 0xA0 or 0xDC <= head < 0xE0:
+            found += 1
+        if 0xA0 <= head < 0xC0:  # a short text
+            at += head & 0x1F
+        elif head in _FIXED:
+            at += _FIXED[head]
+        elif head in _SIZED:
+            size, more = _SIZED[head]
+            at += size + more + int.from_bytes(data[at : at + size], "big")
+    return found
