@@ -19,12 +19,20 @@ from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import MarkerInfo
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import Setup
+from lacoc_shared.seat import Phase
 from lacoc_shared.words import render
 
 mujoco = pytest.importorskip("mujoco")
 field = pytest.importorskip("lacoc_arenas.field")
 simulation = pytest.importorskip("lacoc_server.simulate")
 scenes = pytest.importorskip("lacoc_server.world.scene")
+headless = pytest.importorskip("lacoc_server.simulate.headless")
+inputs = pytest.importorskip("lacoc_server.simulate.inputs")
+journals = pytest.importorskip("lacoc_server.journal.journal")
+replay = pytest.importorskip("lacoc_server.journal.replay")
+matches = pytest.importorskip("lacoc_server.match.match")
+world = pytest.importorskip("lacoc_server.world.world")
+reader = pytest.importorskip("lacoc_shared.record.reader")
 
 GUIDE = (Path(__file__).parents[2] / "docs" / "write-an-arena.md").read_text(encoding="utf-8")
 """The guide for writing an arena. The game is cut out of it and played unchanged."""
@@ -239,3 +247,34 @@ def test_the_guide_s_game_is_played(race: Path, tmp_path: Path) -> None:
     result = simulation.simulate(setup, players, tmp_path / "records", arena=ground.folder)
     assert (render(result.reason), result.scores) == ("the race is won", (1, 0))
     assert result.official == "left"
+
+
+def test_a_court_goes_on_when_a_game_breaks(race: Path, tmp_path: Path) -> None:
+    """At a court an error of the rules halts the match; its record has every beat, and is proven.
+
+    Without a court the author of the game sees the error.
+    """
+    text = (race / "rules.py").read_text()
+    (race / "rules.py").write_text(text.replace("past.index(True)", "past.index(5)"))
+    ground = arena.load(str(race), {"game": {"length_m": 1.2}, "match": {"duration_s": 20.0}})
+    setup = Setup(
+        match_id="race", court="c", match=1, arena=ground.name, settings=ground.settings, limits={}
+    )
+    players = [simulation.player(ground, seat, "runner", late_ticks=5 * seat) for seat in (0, 1)]
+    with pytest.raises(UserError, match="raised ValueError"):
+        simulation.simulate(setup, players, arena=ground.folder)
+
+    match = matches.Match(setup, world.World, ground.folder)
+    match.survives_rules = True
+    journal = journals.Journal(match, tmp_path)
+    for _ in headless._follow(
+        inputs.whole_match(players, match.sheet), lambda items: journal.beat(items)[0]
+    ):
+        pass
+    journal.close()
+    assert match.phase is Phase.VOID, "it was halted, so it has no result"
+    record = reader.Record.read(journal.writer.path)
+    faults = [event for event in record.events if event.kind == "rules"]
+    assert ["raised ValueError" in render(fault.said) for fault in faults] == [True]
+    *_, verdict = replay.verify(record, ground.folder, processes=1)
+    assert verdict.kind is replay.VerdictKind.SAME

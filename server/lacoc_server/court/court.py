@@ -345,7 +345,9 @@ class Court:
             assigned=assigned,
         )
         folder = None if assigned.waits else settings.recordings
-        return self._journal_of(Match(setup, World, arena.folder), folder)
+        match = Match(setup, World, arena.folder)
+        match.survives_rules = True  # other matches go on at this court
+        return self._journal_of(match, folder)
 
     def _journal_of(
         self,

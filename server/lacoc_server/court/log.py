@@ -11,7 +11,7 @@ from lacoc_shared.messages.office import Assigned
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render, say
 
-_TROUBLE = frozenset({"advice", "fault", "silent"})
+_TROUBLE = frozenset({"advice", "fault", "rules", "silent"})
 """Kinds of events that are logged as warnings."""
 _SLOW_BEATS = 30 * BEATS_PER_S
 """Fewest beats between two reports of slow beats; a busy machine has some every second."""

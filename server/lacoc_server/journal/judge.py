@@ -190,6 +190,7 @@ class Judge:
         with fits_together(record):
             self._recorded = Recorded(record)
             self.match = Match(record.header.setup, self._make, folder)
+        self.match.survives_rules = True  # as at the court
 
     def sections(self) -> Iterator[Section]:
         """Judge beat by beat, up to the first difference from the record.

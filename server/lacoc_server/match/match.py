@@ -32,6 +32,7 @@ from lacoc_shared.inputs import (
     SilentSeat,
 )
 from lacoc_shared.messages import Done, Event, Frame, Gains, Outcome
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.schema import Result, Setup, Touch
 from lacoc_shared.seat import RESTART_KEY, Phase
 from lacoc_shared.words import Phrase, say
@@ -255,7 +256,15 @@ class Match(MatchState):
         self.ticks += 1
         observation, self._touch = self.staging.observe()
         idle = tuple([seat.index for seat in self.seats if seat.idle])
-        for event in self.history.observe(observation, self.next_number, idle):
+        try:
+            events = self.history.observe(observation, self.next_number, idle)
+        except UserError as wrong:
+            if not self.survives_rules:
+                raise
+            self.tell("rules", say("event.rules-failed", why=wrong.phrase))
+            self.enter(Phase.HALTED)
+            return
+        for event in events:
             self.tell_judged(event)
         if self.history.over:
             self.finish(self.history.over)

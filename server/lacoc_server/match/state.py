@@ -103,6 +103,9 @@ class MatchState:
         self.next_wanted = False
         self.fault: Fault | None = None
         """The fault that stopped physics in the newest tick; None: none did."""
+        self.survives_rules = False
+        """Whether an error of the game's code, which may be somebody else's, is a fault that halts
+        the match. False: the error ends the program, so that the author of the game sees it."""
         self.halted_by = THE_COURT
         """In a halt, whose decision began it; `THE_COURT` for its own, for a fault, and else."""
         self.staging = Staging(self.arena, make_physics)

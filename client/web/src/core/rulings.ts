@@ -44,7 +44,7 @@ export function whyHalted(events: readonly Event[]): Event | null {
   const index = events.findLastIndex(({ data }) => data.after === "HALTED");
   const halt = events[index];
   if (!halt) return null;
-  const causes = new Set(["decision", "fault"]);
+  const causes = new Set(["decision", "fault", "rules"]);
   return (
     events.slice(0, index).findLast(({ beat, kind }) => beat === halt.beat && causes.has(kind)) ??
     null

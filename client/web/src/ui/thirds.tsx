@@ -13,7 +13,7 @@ const SHOWN_BEATS = 4.5 * BEATS_PER_S;
 
 /** The decisions that another part of the picture tells. */
 const TOLD_ELSEWHERE = new Set(["start", "resume", "official", "next", "ready", "declare"]);
-const KINDS_TOLD = new Set(["restart", "silent", "fault"]);
+const KINDS_TOLD = new Set(["restart", "silent", "fault", "rules"]);
 
 interface Props {
   match: Match;
