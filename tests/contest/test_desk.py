@@ -10,6 +10,7 @@ from office_room import CODE, KEY, NOW_MS, Room, said, sample
 from lacoc_robots.library import robot_folder
 from lacoc_server.contest.acts import deciding, organiser
 from lacoc_server.contest.kept.applications import Applications
+from lacoc_server.contest.kept.entries import ContestEntry
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
@@ -191,6 +192,25 @@ def test_a_declined_name_is_free_and_its_link_opens_nothing(room: Room) -> None:
     assert isinstance(second, OwnEntry)
     assert second.token != first.token
     assert said(room.ask(Decline(secret=KEY, teams=("Crabs",)))) == "desk.no-application"
+
+
+def test_files_of_a_team_that_is_declined_meanwhile_do_not_come_back(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While files are weighed in, the organiser may decline the team: then they are forgotten."""
+    first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(first, OwnEntry)
+    weighed = room.desk._weighed
+
+    def slowly(team: str, files: TeamFiles) -> ContestEntry:
+        entry = weighed(team, files)
+        room.ask(Decline(secret=KEY, teams=(team,)))
+        return entry
+
+    monkeypatch.setattr(room.desk, "_weighed", slowly)
+    changed = ChangeFiles(secret=first.token, files=sample(b"# new"))
+    assert said(room.ask(changed)) == "desk.no-such-team"
+    assert room.states() == {}
 
 
 def test_a_flood_of_applications_is_cleared_at_once(room: Room) -> None:

@@ -115,6 +115,7 @@ class Desk:
                     return entering.own(self._book, team)
             entry = self._weighed(team, asked.files)
             with self._one:
+                self.admission.team(asked.secret, now_s)  # it may have been declined meanwhile
                 return entering.change(self._book, team, entry)
         if isinstance(asked, CourtDay):
             there = asked.court in self._book.where.contest.courts
