@@ -208,7 +208,7 @@ def test_files_of_a_team_that_is_declined_meanwhile_do_not_come_back(
         return entry
 
     monkeypatch.setattr(room.desk, "_weighed", slowly)
-    changed = ChangeFiles(secret=first.token, files=sample(b"# new"))
+    changed = ChangeFiles(secret=first.token, files=sample())
     assert said(room.ask(changed)) == "desk.no-such-team"
     assert room.states() == {}
 
