@@ -257,7 +257,7 @@ def _robot(request: RobotRequest, course_of: CourseOf) -> RobotReply:
         start_deg=tuple(round(math.degrees(angle), 9) for angle in robot.start_posture),
         start_z_m=robot.start_z_m,
         facts=facts(robot),
-        limits=bounds(Limits()),
+        limits=bounds(robot, Limits()),
         sheet=_sheet(course, message_hash(encode(scene))),
         scene=scene,
     )
