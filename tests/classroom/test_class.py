@@ -100,6 +100,25 @@ def test_students_come_in_with_code_and_name(room: ClassRoom, closing: ExitStack
     assert stranger.shared.table == table
 
 
+def test_a_nickname_without_work_is_free_again(
+    room: ClassRoom, teacher: TeacherPage, closing: ExitStack
+) -> None:
+    """A browser that never got its token enters again; a nickname with work stays its owner's."""
+    ola = comes(closing, room, "Ola")
+    teacher.until(lambda: teacher.card("Ola").get("online"))
+    ola.close()
+    teacher.until(lambda: not teacher.card("Ola")["online"])
+    ola = comes(closing, room, "ola")
+    assert ola.hello["student"] == "ola"
+    teacher.until(lambda: teacher.card("ola").get("online"))
+    edit(ola, ola.sample(), 3.5)
+    ola.close()
+    teacher.until(lambda: not teacher.card("ola")["online"])
+    with pytest.raises(Refused) as refusal:
+        comes(closing, room, "Ola")
+    assert code_of(refusal) == "class.name-taken"
+
+
 def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitStack) -> None:
     """Wrong class codes are refused; other students of the same machine still enter and work."""
     student = comes(closing, room, "Bea")

@@ -27,6 +27,7 @@ from lacoc_client.workshop.design.requests import GroupAsk, Hello
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_client.workshop.tables.document import document_of
+from lacoc_client.workshop.tables.entries import Entry
 from lacoc_shared.mistakes import UserError
 
 __all__ = ["closing", "room", "teacher"]
@@ -329,3 +330,25 @@ def test_a_class_of_an_earlier_version_goes_on(tmp_path: Path) -> None:
             assert sorted(one.student for one in files) == ["学生", "学生 (group)"]
 
     run_async(go_on)
+
+
+@pytest.mark.parametrize(
+    ("shape", "bad", "name", "text"),
+    [
+        ("p1", None, "unfinished-Loco-data.txt", "Num of Posture\t1\n3 Key\t1\t\t-2.5\n"),
+        ("p1", "=A1", "unfinished-Loco-data.txt", "Num of Posture\t1\n3 Key\t1\t\t-2.5\n"),
+        ("p1", 500.0, "unfinished-Loco-data.txt", "Num of Posture\t1\n3 Key\t1\t500\t-2.5\n"),
+        ("l1", None, "unfinished-LocoTra-data.txt", "1\n1\n1\t\t-2.5\n"),
+    ],
+)
+def test_an_unfinished_table_is_exported_too(
+    shape: str, bad: Entry | None, name: str, text: str
+) -> None:
+    """Its file has all its angles, and a name that says so; the student's robot is there, too."""
+    entries: dict[str, Entry] = {"shape": shape, "robot": '{"name":"a.toml","text":"[body]"}'}
+    entries |= {f"{shape}/3.0": True, f"{shape}/3.0/0": 1.0, f"{shape}/3.0/2": -2.5}
+    if bad is not None:
+        entries[f"{shape}/3.0/1"] = bad
+    kept = Document("Ann", "table", "7", 5.0, document_of(entries).state)
+    files = {one.name: one.content.decode() for one in student_files([kept])}
+    assert files == {"robot.toml": "[body]", name: text}

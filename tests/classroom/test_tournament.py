@@ -1,6 +1,7 @@
 """Tests of a class's tournament: real matches, played by the real command."""
 
 import asyncio
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -8,6 +9,8 @@ import psutil
 import pytest
 from aside import run_async
 
+from lacoc_client.play import simulation
+from lacoc_client.web.gateway.wire import FAULT
 from lacoc_client.workshop.classroom.tournament import Tournament, TournamentState
 from lacoc_client.workshop.phases.export import free_name
 from lacoc_robots.library import find_robot, sample_gait_files
@@ -138,6 +141,23 @@ def test_a_tournament_of_broken_gaits_says_who_was_left_out(tmp_path: Path) -> N
         assert render(room.state.trouble).endswith("at least two gaits that walk. Left out: Bo.")
 
     run_async(play)
+
+
+def test_a_line_that_nobody_can_read_ends_a_tournament_with_a_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The page shows that an error occurred, and the log shows which one."""
+    told = [sys.executable, "-c", "print('no line of a simulation')"]
+    monkeypatch.setattr(simulation, "command_line", lambda _: told)
+
+    async def play() -> None:
+        room = Class(tmp_path)
+        await room.tournament.play({"Ada": HEXAPOD, "Bo": LONG_LEGS}, "othello", 1, 3.0)
+        await room.until(1)
+        assert (room.state.state, room.state.trouble) == ("stopped", FAULT)
+
+    run_async(play)
+    assert "DecodeError" in caplog.text
 
 
 @pytest.mark.parametrize("players", [{}, {"Ada": HEXAPOD}, {"Ada": HEXAPOD, "Bo": WITHOUT}])

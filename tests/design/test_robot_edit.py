@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from lacoc_client.workshop.design.saving.robot_edit import LegEntry, RobotEntry, edit_robot
 from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
+from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.studio.facts import bounds, facts
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import FileRefused, UserError
 
 ENTRIES: tuple[RobotEntry, ...] = get_args(RobotEntry)
 SAMPLES = [
@@ -62,9 +63,25 @@ def test_the_robot_has_the_number_under_the_name_of_the_fact(text: str, entry: R
     value = (old[0] if isinstance(old, tuple) else old) * (1.02 if entry == "root_link_m" else 0.98)
     if entry in ("armature", "hold_s"):  # they stand at their lowest
         value = 0.01
-    new = facts(read_robot(edit_robot(text, entry, value), "robot.toml"))[entry]
+    robot = read_robot(edit_robot(text, entry, value), "robot.toml")
+    new = facts(robot)[entry]
     assert new == pytest.approx((value, value) if isinstance(old, tuple) else value, abs=1e-6)
-    assert entry == "start_height_m" or entry in bounds(Limits())
+    assert entry == "start_height_m" or entry in bounds(robot, Limits())
+
+
+@pytest.mark.parametrize("advance", ["reached", "time"])
+def test_the_shortest_hold_that_is_shown_is_the_shortest_allowed(advance: str) -> None:
+    """A robot whose postures go on by time must hold each for a beat; another one may hold none."""
+    text = SAMPLES[0].replace('advance = "reached"', f'advance = "{advance}"')
+
+    def read(hold_s: float) -> RobotSpec:
+        return read_robot(edit_robot(text, "hold_s", hold_s), "a.toml")
+
+    low, _ = bounds(read(1.0), Limits())["hold_s"]
+    assert low is not None
+    assert read(low).hold_us == round(low * 1e6)
+    with pytest.raises(FileRefused):
+        read(low - 0.001)
 
 
 @given(

@@ -206,11 +206,26 @@ def test_formulas_in_the_table_become_their_numbers() -> None:
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET]["E2"] = "=-B2"
     formula = _replaced(saved(book), lambda text: NO_VALUE.sub("<v>-45</v>", text))
-    assert formulas_in(formula, "x.xlsx") == 1
+    assert formulas_in(formula, "x.xlsx", 18) == 1
     assert edit_workbook(formula, "x.xlsx", sample()) is formula
     after = edit_workbook(formula, "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert everything(after)[f"{INPUT_SHEET}!E2"][0] == -45
-    assert formulas_in(after, "x.xlsx") == 0
+    assert formulas_in(after, "x.xlsx", 18) == 0
+
+
+@pytest.mark.parametrize(
+    ("place", "formula", "value"),
+    [("V2", '=IF(B2&gt;90,"!"," ")', " "), ("A2", '="0 Key"', "0 Key")],
+)
+def test_a_formula_that_is_no_angle_is_not_counted(place: str, formula: str, value: str) -> None:
+    """A formula beside the table, or for the name of a key, never becomes a number."""
+    book = openpyxl.load_workbook(CALC)
+    book[INPUT_SHEET][place] = formula
+    cell = re.compile(rf'<c r="{place}"([^>]*)>(<f>.*?</f>)<v ?/?>(</v>)?')
+    shown = rf'<c r="{place}" t="str"\1>\2<v>{value}</v>'
+    data = _replaced(saved(book), lambda text: cell.sub(shown, text))
+    assert read_workbook(data, "x.xlsx") == sample()
+    assert formulas_in(data, "x.xlsx", 18) == 0
 
 
 def test_pictures_and_charts_stay_byte_for_byte() -> None:
@@ -289,7 +304,7 @@ def test_a_shared_formula_lives_on_outside_the_table() -> None:
             re.sub('<c r="B2"[^>]*><v>45</v></c>', first, text, count=1),
         ),
     )
-    assert formulas_in(shared, "x.xlsx") == 1
+    assert formulas_in(shared, "x.xlsx", 18) == 1
     after = edit_workbook(shared, "x.xlsx", with_angle(sample(), 0, 0, 33))
     assert everything(after)[f"{INPUT_SHEET}!B20"][0] == "=20+25+C48"
 

@@ -18,6 +18,7 @@ from waiting import LIMIT_S, until
 
 from lacoc_robots.library import find_robot, sample_gait_files
 from lacoc_robots.robot_file import read_robot
+from lacoc_server.match.entry import weigh_in
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.answers import answer, read_files, try_gait
 from lacoc_server.studio.coach.coach import coach, reply_of, task_of
@@ -31,6 +32,7 @@ from lacoc_shared.codec import decode, encode
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import write_gait
 from lacoc_shared.messages import PROTOCOL, Done, Refusal, SentFile
+from lacoc_shared.mistakes import FileRefused
 from lacoc_shared.network.session import Question, Refused, Session, open_client
 from lacoc_shared.studio import (
     STUDIO_MAX_BYTES,
@@ -51,6 +53,7 @@ from lacoc_shared.studio import (
     VariantsReply,
     VariantsRequest,
 )
+from lacoc_shared.words import say
 
 pytestmark = pytest.mark.slow
 KEYS = StudioKeys("test")
@@ -245,6 +248,20 @@ def test_mistakes_in_files_are_listed(asker: Asker) -> None:
     refusal = asker.refusal("trial", TrialRequest(protocol=PROTOCOL, files=files))
     assert refusal.mistakes
     assert refusal.mistakes[0].file == postures.name
+
+
+@pytest.mark.parametrize("is_pair", [False, True])
+def test_a_gait_file_of_the_other_kind_is_refused_as_at_a_court(is_pair: bool) -> None:
+    """A Loco-data file as LocoTra-data is a mistake, also beside another Loco-data file."""
+    postures, _ = sample_gait_files("hexapod")
+    robot = SentFile(*find_robot("hexapod"))
+    files = GaitFiles(robot=robot, postures=postures if is_pair else None, locomotion=postures)
+    with pytest.raises(FileRefused) as studio:
+        read_files(files)
+    with pytest.raises(FileRefused) as court:
+        weigh_in(robot, files.postures, files.locomotion)
+    assert studio.value.mistakes == court.value.mistakes
+    assert [one.found for one in studio.value.mistakes] == [say("gait.other-kind")]
 
 
 def test_a_process_that_dies_is_replaced(asker: Asker) -> None:

@@ -73,24 +73,8 @@ def _weigh_in(
         spec = read_robot(robot.data, robot.name, limits)
     except FileRefused as refused:
         mistakes += refused.mistakes
-    tables: list[PostureTable | LocomotionTable] = []
     notes: list[Phrase] = []
-    for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
-        if file is None:
-            continue
-        try:
-            table = _read_gait(file, spec, notes)
-        except FileRefused as refused:
-            mistakes += refused.mistakes
-            continue
-        if isinstance(table, kind):
-            tables.append(table)
-        else:
-            mistakes.append(Mistake(file=file.name, found=say("gait.other-kind"), expected=what))
-    gait = Gait(
-        next((t for t in tables if isinstance(t, PostureTable)), None),
-        next((t for t in tables if isinstance(t, LocomotionTable)), None),
-    )
+    gait = read_gaits(postures, locomotion, spec, mistakes, notes)
     if not (mistakes or any(gait.keys(level) for level in levels)):
         expected = say("robot.any-of", options=[_TABLES[level][1] for level in sorted(levels)])
         found = say("gait.none-for-arena")
@@ -100,6 +84,41 @@ def _weigh_in(
     if spec is None or mistakes:
         raise FileRefused(mistakes)
     return Entry(spec, gait, tuple(notes))
+
+
+def read_gaits(
+    postures: SentFile | None,
+    locomotion: SentFile | None,
+    robot: RobotSpec | None,
+    mistakes: list[Mistake],
+    notes: list[Phrase],
+) -> Gait:
+    """Read gait files and check that they fit a robot, and that each is of its own kind.
+
+    Args:
+        postures: a Loco-data file, or None.
+        locomotion: a LocoTra-data file, or None.
+        robot: the robot; None: its file was refused, and only the form of the files is checked.
+        mistakes: receives the mistakes of the files; the gait has no table of a file with mistakes.
+        notes: receives remarks on things that are legal, but probably not meant.
+    """
+    tables: list[PostureTable | LocomotionTable] = []
+    for file, (kind, what) in zip((postures, locomotion), _TABLES.values(), strict=True):
+        if file is None:
+            continue
+        try:
+            table = _read_gait(file, robot, notes)
+        except FileRefused as refused:
+            mistakes += refused.mistakes
+            continue
+        if isinstance(table, kind):
+            tables.append(table)
+        else:
+            mistakes.append(Mistake(file=file.name, found=say("gait.other-kind"), expected=what))
+    return Gait(
+        next((t for t in tables if isinstance(t, PostureTable)), None),
+        next((t for t in tables if isinstance(t, LocomotionTable)), None),
+    )
 
 
 @dataclass(frozen=True)

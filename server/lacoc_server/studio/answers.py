@@ -14,6 +14,7 @@ from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import read_robot
 from lacoc_server.doors.inbox import FILE_NAME_MAX
+from lacoc_server.match.entry import read_gaits
 from lacoc_server.studio.facts import bounds, facts, leg_shape
 from lacoc_server.trial.course import LONGEST_TICKS, SETTLE_TICKS, Course
 from lacoc_server.trial.figures import Figures, measure
@@ -25,8 +26,7 @@ from lacoc_server.trial.walk import Floats, Press, Walk
 from lacoc_shared import __version__
 from lacoc_shared.codec import BadMessage, decode, encode, message_hash, protocol_of
 from lacoc_shared.gait.joining import join_postures, sample_sequences
-from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, Level, LocomotionTable, PostureTable
-from lacoc_shared.gait.text import read_gait
+from lacoc_shared.gait.tables import SAMPLE_KEYS, Gait, Level
 from lacoc_shared.messages import PROTOCOL, Refusal, SentFile, Sheet, SheetSeat
 from lacoc_shared.mistakes import FileRefused, Mistake, UserError
 from lacoc_shared.seat import BEAT_S, BEATS_PER_S
@@ -158,33 +158,22 @@ def read_files(files: GaitFiles) -> RobotWithGait:
     robot = _robot_of(files.robot)
     for one in (files.postures, files.locomotion):
         _check_name(one)
-    sent = [one for one in (files.postures, files.locomotion) if one is not None]
-    if not sent and files.robot is None:
-        sent = [one for one in sample_gait_files(WORKSHOPS_ROBOT) if one is not None]
+    sent = files.postures, files.locomotion
+    if sent == (None, None) and files.robot is None:
+        sent = sample_gait_files(WORKSHOPS_ROBOT)
     mistakes: list[Mistake] = []
     notes: list[Phrase] = []
-    postures: PostureTable | None = None
-    locomotion: LocomotionTable | None = None
-    for file in sent:
-        try:
-            table = read_gait(
-                file.data, file.name, legs=robot.labels, range_deg=robot.ranges_deg, notes=notes
-            )
-        except FileRefused as refused:
-            mistakes += refused.mistakes
-            continue
-        if isinstance(table, PostureTable):
-            postures = table
-        else:
-            locomotion = table
+    gait = read_gaits(*sent, robot, mistakes, notes)
     if mistakes:
         raise FileRefused(mistakes)
-    if postures is None and locomotion is None:
+    postures = gait.postures
+    if postures is None and gait.locomotion is None:
         raise UserError(say("studio.no-gait"))
-    if postures is None or locomotion is not None:
-        return RobotWithGait(robot, Gait(postures, locomotion), None, notes)
+    if postures is None or gait.locomotion is not None:
+        return RobotWithGait(robot, gait, None, notes)
     if files.sequences is None:
         return RobotWithGait(robot, Gait(postures, sample_sequences(postures)), SAMPLE_KEYS, notes)
+    assert sent[0] is not None
     joined = join_postures(postures, sent[0].name, files.sequences)
     return RobotWithGait(robot, Gait(postures, joined), files.sequences, notes)
 
@@ -268,7 +257,7 @@ def _robot(request: RobotRequest, course_of: CourseOf) -> RobotReply:
         start_deg=tuple(round(math.degrees(angle), 9) for angle in robot.start_posture),
         start_z_m=robot.start_z_m,
         facts=facts(robot),
-        limits=bounds(Limits()),
+        limits=bounds(robot, Limits()),
         sheet=_sheet(course, message_hash(encode(scene))),
         scene=scene,
     )

@@ -8,6 +8,7 @@ from lacoc_robots.leg import LegSpec
 from lacoc_robots.limits import Limits
 from lacoc_robots.robot import RobotSpec
 from lacoc_robots.robot_file import ANG_MIN_LEAST_DEG_S, BODY_MIN_M, KP_LEAST, TORQUE_LEAST_N_M
+from lacoc_shared.seat import BEAT_S
 from lacoc_shared.studio import LegShape
 
 Bounds = tuple[float | None, float | None]
@@ -72,8 +73,11 @@ def leg_shape(leg: LegSpec) -> LegShape:
     )
 
 
-def bounds(limits: Limits) -> dict[str, Bounds]:
-    """List the rules' limits by the names of `facts`; numbers without limits are left out."""
+def bounds(robot: RobotSpec, limits: Limits) -> dict[str, Bounds]:
+    """List the rules' limits for a robot by the names of `facts`.
+
+    Numbers without limits are left out.
+    """
     part_kg = limits.part_mass_min_kg, limits.part_mass_max_kg
     link_m = limits.link_min_m, limits.link_max_m
     return {
@@ -97,7 +101,7 @@ def bounds(limits: Limits) -> dict[str, Bounds]:
         "range_high_deg": (-limits.range_deg, limits.range_deg),
         "drop_m": (0.0, limits.drop_m),
         "ang_min_deg_s": (ANG_MIN_LEAST_DEG_S, limits.ang_min_deg_s),
-        "hold_s": (0.0, limits.hold_s),
+        "hold_s": (BEAT_S if robot.advance == "time" else 0.0, limits.hold_s),
         "torque_n_m": (TORQUE_LEAST_N_M, limits.torque_n_m),
         "kp": (KP_LEAST, limits.kp_max),
         "kv": (0.0, limits.kv_max),

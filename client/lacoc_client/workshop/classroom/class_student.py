@@ -59,7 +59,8 @@ class ClassStudent(Student):
     def is_idle(self) -> bool:
         """Whether the student has no page open and has done nothing except enter the class."""
         did = any(not isinstance(one, JoinedClass) for one in self.diary.evidence)
-        return not (self.viewers or self.lessons or did or self.draft)
+        has_table = self.own.is_touched or self.table.is_touched
+        return not (self.viewers or self.lessons or did or has_table)
 
     def learned(self, trial: TrialReply | None) -> None:
         """Note that the student did something. After a trial, `trial` is the studio's reply."""

@@ -73,7 +73,11 @@ class ClassDoor:
         return student
 
     async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
-        """Check the class code and the nickname; return this student, or make a new one."""
+        """Check the class code and the nickname; return this student, or make a new one.
+
+        A student who opened a page, did nothing and has no page open is deleted first: perhaps this
+        is the same browser, which lost its connection before it had its token.
+        """
         if not hello.code:
             raise UserError(say("class.enter"))
         if read_code(hello.code) != self._code():
@@ -86,13 +90,16 @@ class ClassDoor:
             if same_name(name) not in self._students and len(self._students) >= _MOST_STUDENTS:
                 await self._make_room()
             student = self._students.get(same_name(name))
+            if student is not None and not student.is_admitting:
+                if not (student.seen_s and student.is_idle):
+                    raise UserError(say("class.name-taken", name=name))
+                await self._forget(student)
+                student = None
             if student is None:
                 names = (one.name for one in self._students.values())
                 if (there := next((n for n in names if look_alike(n, name)), None)) is not None:
                     raise UserError(say("class.name-taken", name=there))
                 student = self._new(name)
-            elif not student.is_admitting:
-                raise UserError(say("class.name-taken", name=name))
             student.is_admitting = False  # nobody else takes the name while this is written
         await student.diary.add(JoinedClass())
         return student

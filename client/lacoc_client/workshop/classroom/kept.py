@@ -1,6 +1,7 @@
 """Exports of a class: evidence and tables as files for a teacher."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 
 from lacoc_client.workshop.classroom.groups.group_state import group_title
@@ -9,11 +10,10 @@ from lacoc_client.workshop.classroom.state import NAME, NOBODY, read_state
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_client.workshop.tables.document import TableDocument
-from lacoc_client.workshop.tables.draft import Draft, draft_of
+from lacoc_client.workshop.tables.draft import files_of
 from lacoc_client.workshop.tables.kept_table import kept_table
-from lacoc_robots.seat_files import USUAL_NAMES
 from lacoc_shared.command.database import Damaged
-from lacoc_shared.mistakes import FileRefused, UserError, text_of
+from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 EVIDENCE, TABLES = "evidence.csv", "tables.zip"
@@ -22,7 +22,7 @@ EVIDENCE, TABLES = "evidence.csv", "tables.zip"
 def student_files(kept: Iterable[Document]) -> list[Document]:
     """Return the gait and robot files that the tables in a class file stand for.
 
-    Tables with a bad cell or a mistake are left out. A group's files are under the group's name.
+    A group's files are under the group's name.
     """
     kept = list(kept)
     by_owner: dict[str, list[Document]] = {}
@@ -34,26 +34,14 @@ def student_files(kept: Iterable[Document]) -> list[Document]:
     found = []
     for owner, documents in by_owner.items():
         table = kept_table(documents)
-        draft = None if table is None else _draft(table)
-        if table is None or draft is None:
+        if table is None:
             continue
-        try:
-            files = draft.files()
-        except (FileRefused, UserError):
-            continue  # a mistake in the table, such as an angle without a number
-        found += [
-            Document(titles.get(owner, owner), name, table.version, table.at_s, file.data)
-            for name, file in zip(USUAL_NAMES, files, strict=True)
-            if file is not None
-        ]
+        with suppress(UserError):  # of another version of this program
+            found += [
+                Document(titles.get(owner, owner), name, table.version, table.at_s, data)
+                for name, data in files_of(TableDocument(table.content).entries).items()
+            ]
     return found
-
-
-def _draft(kept: Document) -> Draft | None:
-    try:
-        return draft_of(TableDocument(kept.content).entries)
-    except UserError:
-        return None  # of another version of this program
 
 
 def export(path: Path) -> dict[str, bytes]:

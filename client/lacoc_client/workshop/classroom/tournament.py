@@ -17,6 +17,7 @@ from lacoc_client.play.simulation import (
     Simulation,
     StandingsLine,
 )
+from lacoc_client.web.gateway.wire import FAULT
 from lacoc_client.workshop.phases.export import free_name
 from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles
 from lacoc_shared.command.scratch import Scratch
@@ -147,6 +148,10 @@ class Tournament:
                 is_done = trouble is None
         except OSError as error:
             trouble = say("tournament.cannot-start", why=error.strerror or str(error))
+        except Exception as error:  # a bug, but the teacher must learn of it
+            trouble = FAULT
+            shown = {"message": "The tournament ended by a bug", "exception": error}
+            asyncio.get_running_loop().call_exception_handler(shown)
         finally:
             if scratch is not None:
                 scratch.close()

@@ -45,10 +45,10 @@ def read_file(name: str, data: bytes) -> FileContent:
             raise UserError(say("design.no-text", name=name)) from None
     notes: list[Phrase] = []
     read = read_workbook if data.startswith(_PACKED) else read_gait
-    table = page_table(read(data, name, notes=notes))
-    if read is read_workbook and (count := formulas_in(data, name)):
+    gait = read(data, name, notes=notes)
+    if read is read_workbook and (count := formulas_in(data, name, gait.joints)):
         notes.append(say("design.formulas", file=name, count=count))
-    return FileContent(table=table, notes=tuple(notes))
+    return FileContent(table=page_table(gait), notes=tuple(notes))
 
 
 def file_bytes(name: str, content: FileTable | str, before: bytes | None = None) -> bytes:

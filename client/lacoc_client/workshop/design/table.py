@@ -1,5 +1,6 @@
 """A gait as a table of the page /design: rows of angles in degrees, sorted by key."""
 
+from collections.abc import Sequence
 from itertools import groupby
 from typing import Annotated, Literal
 
@@ -12,6 +13,8 @@ from lacoc_shared.gait.tables import JOINTS_PER_LEG, Level, LocomotionTable, Pos
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
+Kind = Literal["postures", "locomotion"]
+"""Kind of a table: postures (level A) or locomotion (level B)."""
 _Digit = Annotated[int, msgspec.Meta(ge=0, lt=MAX_KEYS)]
 _Index = Annotated[int, msgspec.Meta(ge=0, lt=MAX_POSTURES_PER_KEY)]
 _MOST_LEGS = 32
@@ -32,14 +35,19 @@ class FileRow(msgspec.Struct, frozen=True, kw_only=True):
 class FileTable(msgspec.Struct, frozen=True, kw_only=True):
     """The table of a gait file, as the page has it."""
 
-    kind: Literal["postures", "locomotion"]
+    kind: Kind
     legs: Annotated[int, msgspec.Meta(ge=1, le=_MOST_LEGS)]
     rows: Annotated[tuple[FileRow, ...], msgspec.Meta(max_length=MAX_KEYS * MAX_POSTURES_PER_KEY)]
 
     @property
     def file_name(self) -> str:
         """The usual name of a text file of this kind of table, as "Loco-data.txt" (rules 2)."""
-        return GAIT_NAMES[Level.POSTURE if self.kind == "postures" else Level.LOCOMOTION]
+        return file_name_of(self.kind)
+
+
+def file_name_of(kind: Kind) -> str:
+    """Return the usual name of a text file of this kind of table, as "Loco-data.txt" (rules 2)."""
+    return GAIT_NAMES[Level.POSTURE if kind == "postures" else Level.LOCOMOTION]
 
 
 def page_table(gait: PostureTable | LocomotionTable) -> FileTable:
@@ -67,30 +75,38 @@ def gait_of(table: FileTable, name: str) -> PostureTable | LocomotionTable:
         FileRefused: with every mistake; its row and column are counted as in a file.
         UserError: if a locomotion table has no row of a key below its highest key.
     """
-    cells = _posture_cells(table) if table.kind == "postures" else _locomotion_cells(table)
+    if table.kind == "locomotion":
+        keys = {row.key for row in table.rows}
+        missing = sorted({*range(max(keys, default=0) + 1)} - keys)
+        if missing:
+            raise UserError(say("design.missing-key", key=missing[0]))
+        ordered = sorted(table.rows, key=lambda row: (row.key, row.posture))
+    else:
+        ordered = list(table.rows)
+    cells = file_cells(table.kind, [(row.key, _texts(row)) for row in ordered])
     rows = [Row(number, row) for number, row in enumerate(cells, start=1)]
     return read_cells(rows, name, legs=table.legs)
 
 
+def file_cells(kind: Kind, rows: Sequence[tuple[int, list[str]]]) -> list[list[str]]:
+    """Return the cells of a gait file without a legend.
+
+    Args:
+        kind: the kind of the table.
+        rows: the key and the cells of each row, in order; rows of one key stand together.
+    """
+    if kind == "postures":
+        header = ["Num of Posture", str(len(rows))]
+        return [header, *([f"{key} Key", *cells] for key, cells in rows)]
+    keys = [[cells for _, cells in group] for _, group in groupby(rows, key=lambda row: row[0])]
+    found = [[str(len(keys))]]
+    for group in keys:
+        found += [[str(len(group))], *group]
+    return found
+
+
 def _row(key: int, index: int, angles: Posture) -> FileRow:
     return FileRow(key=key, posture=index, angles_deg=tuple(map(degrees_of, angles)))
-
-
-def _posture_cells(table: FileTable) -> list[list[str]]:
-    header = ["Num of Posture", str(len(table.rows))]
-    return [header, *([f"{row.key} Key", *_texts(row)] for row in table.rows)]
-
-
-def _locomotion_cells(table: FileTable) -> list[list[str]]:
-    rows = sorted(table.rows, key=lambda row: (row.key, row.posture))
-    keys = {key: list(group) for key, group in groupby(rows, key=lambda row: row.key)}
-    missing = sorted({*range(max(keys, default=0) + 1)} - keys.keys())
-    if missing:
-        raise UserError(say("design.missing-key", key=missing[0]))
-    cells = [[str(len(keys))]]
-    for group in keys.values():
-        cells += [[str(len(group))], *map(_texts, group)]
-    return cells
 
 
 def _texts(row: FileRow) -> list[str]:

@@ -1,19 +1,22 @@
 """The newest table of a student, with everything that is needed to let a robot walk with it."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import NamedTuple
 
 import msgspec
 
 from lacoc_client.workshop.design.files import sent_gait
-from lacoc_client.workshop.design.table import FileRow, FileTable
+from lacoc_client.workshop.design.table import FileRow, FileTable, Kind, file_cells, file_name_of
 from lacoc_client.workshop.tables.entries import PLACE, SHAPE, Entry
-from lacoc_robots.seat_files import SeatFiles, with_level_b
+from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles, with_level_b
+from lacoc_shared.gait.cells import number_text
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 from lacoc_shared.messages import SentFile
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import FileRefused, UserError
 
-_KINDS: dict[str, Literal["postures", "locomotion"]] = {"p": "postures", "l": "locomotion"}
+UNFINISHED = "unfinished-"
+"""Begins the name of the file of a table with an empty cell or a mistake."""
+_KINDS: dict[str, Kind] = {"p": "postures", "l": "locomotion"}
 
 
 class _RobotEntry(msgspec.Struct, frozen=True):
@@ -53,28 +56,74 @@ def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
     table = _table(entries)
     if table is None:
         return None
-    robot = _robot(str(entries.get("robot", "")))
-    return Draft(table=table, sequences=_sequences(entries, table), robot=robot)
+    return Draft(table=table, sequences=_sequences(entries, table), robot=_robot_in(entries))
 
 
-def _table(entries: Mapping[str, Entry]) -> FileTable | None:
+def files_of(entries: Mapping[str, Entry]) -> dict[str, bytes]:
+    """Return the gait and robot files that a document stands for, by their usual names.
+
+    A table with an empty cell or a mistake becomes a text file of its angles, under a name that
+    says so; a cell without an angle is empty in it.
+    """
+    draft = draft_of(entries)
+    try:
+        files = None if draft is None else draft.files()
+    except (FileRefused, UserError):
+        files = None
+    named = dict(zip(USUAL_NAMES, files or (_robot_in(entries), None, None), strict=True))
+    found = {name: file.data for name, file in named.items() if file is not None}
+    table = _cells_in(entries)
+    if files is None and table.rows:
+        rows = [(row.key, [_text(cell) for cell in row.cells]) for row in table.rows]
+        lines = ["\t".join(cells) for cells in file_cells(table.kind, rows)]
+        found[UNFINISHED + file_name_of(table.kind)] = "".join(f"{one}\n" for one in lines).encode()
+    return found
+
+
+class _RowOfCells(NamedTuple):
+    key: int
+    cells: list[Entry | None]
+
+
+class _Cells(NamedTuple):
+    """The rows of a document's table, with whatever is in their cells."""
+
+    kind: Kind
+    legs: int
+    rows: list[_RowOfCells]
+
+
+def _cells_in(entries: Mapping[str, Entry]) -> _Cells:
     shape = str(entries.get("shape", ""))
     found = SHAPE.fullmatch(shape)
     if found is None:
-        return None
+        return _Cells("postures", 0, [])
     kind, legs = _KINDS[found[1]], int(found[2])
     places = sorted(
         (int(place[4]), float(place[5].replace("_", ".")), place[0])
         for place in map(PLACE.fullmatch, entries)
         if place is not None and place[1] == shape and place[6] is None
     )
+    joints = range(JOINTS_PER_LEG * legs)
+    rows = [
+        _RowOfCells(key, [entries.get(f"{name}/{joint}") for joint in joints])
+        for key, _, name in places
+    ]
+    return _Cells(kind, legs, rows)
+
+
+def _text(cell: Entry | None) -> str:
+    return number_text(cell) if isinstance(cell, float) else ""
+
+
+def _table(entries: Mapping[str, Entry]) -> FileTable | None:
+    kind, legs, cells = _cells_in(entries)
     rows = []
-    for key, _, name in places:
-        cells = [entries.get(f"{name}/{joint}") for joint in range(JOINTS_PER_LEG * legs)]
-        angles = tuple(cell for cell in cells if isinstance(cell, float))
-        if len(angles) < len(cells):
+    for row in cells:
+        angles = tuple(cell for cell in row.cells if isinstance(cell, float))
+        if len(angles) < len(row.cells):
             return None
-        rows.append(FileRow(key=key, angles_deg=angles))
+        rows.append(FileRow(key=row.key, angles_deg=angles))
     if not rows:
         return None
     numbered = _numbered(rows) if kind == "locomotion" else tuple(rows)
@@ -116,9 +165,9 @@ def _sequences(
     return tuple(found)
 
 
-def _robot(text: str) -> SentFile | None:
+def _robot_in(entries: Mapping[str, Entry]) -> SentFile | None:
     try:
-        robot = msgspec.json.decode(text, type=_RobotEntry)
+        robot = msgspec.json.decode(str(entries.get("robot", "")), type=_RobotEntry)
         return SentFile(robot.name, robot.text.encode())
     except (msgspec.DecodeError, UnicodeError, RecursionError):
         return None  # the workshop's

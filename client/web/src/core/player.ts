@@ -15,6 +15,7 @@ import type { Refused } from "./connection";
 import type { Court } from "./court";
 import { checkSizes, chosenFiles, chosenNames, chosenSequences } from "./files";
 import { gainsOf } from "./gains";
+import { movesOf } from "./moves";
 import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
@@ -76,6 +77,8 @@ export class Player {
   readonly pressed = signal<readonly { level: number; key: number }[]>([]);
   /** What the robot would gain next; null while it can't gain anything. */
   readonly gains: ReadonlySignal<Gains | null>;
+  /** What each key of level B does, up to the first that the court has not tried. */
+  readonly moves: ReadonlySignal<readonly string[]>;
   /** What comes after this match, as the office says; null: the court goes on with the team. */
   readonly next = signal<Phrase | null>(null);
   /** How many keys were sent. */
@@ -109,6 +112,7 @@ export class Player {
     });
     this.index = computed(() => (this.isHeld() ? (court.seat.value?.index ?? -1) : -1));
     this.gains = gainsOf(court, this.index);
+    this.moves = movesOf(court, this.index);
     this.standing = computed(() => this.stand());
     this.isWaiting = computed(
       () => this.wishHere.value !== null && this.claim.value.state === "joining",

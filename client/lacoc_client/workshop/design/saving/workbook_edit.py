@@ -59,12 +59,13 @@ def edit_workbook(data: bytes, name: str, table: PostureTable) -> bytes:
     return edited
 
 
-def formulas_in(data: bytes, name: str) -> int:
-    """Count the cells with formulas in the rows of a workbook's postures, also beside the table.
+def formulas_in(data: bytes, name: str, joints: int) -> int:
+    """Count the angles in a workbook's table of postures that are formulas.
 
     Args:
         data: an .xlsx file that can be read as postures.
         name: name of the file, for messages.
+        joints: number of angles in each posture.
     """
     sheet = read_sheet_apart(data, name)
     postures = {row.number for row in sheet_rows(sheet) if KEY.fullmatch(row.cells[0].strip())}
@@ -73,7 +74,8 @@ def formulas_in(data: bytes, name: str) -> int:
         cells = SheetXml(book.part(book.sheets[sheet.title])).cells()
     except Exception:  # the workbook can be read, but not edited in place
         return 0
-    return sum(cell.formula is not None and cell.place[0] in postures for cell in cells)
+    angles = {(row, column) for row in postures for column in range(2, joints + 2)}
+    return sum(cell.formula is not None and cell.place in angles for cell in cells)
 
 
 class _Edit:

@@ -179,8 +179,8 @@ function Digit({ court, player, digit, standing, hinted, onKey }: DigitProps) {
 }
 
 /** What a key of level B does, as the court tried it; "" while that is not known. */
-function useMove({ court, index }: Player, digit: number) {
-  return useComputed(() => court.health.value?.moves[index.value]?.[digit] ?? "");
+function useMove({ moves }: Player, digit: number) {
+  return useComputed(() => moves.value[digit] ?? "");
 }
 
 function Restart({ player, onKey }: Props) {
