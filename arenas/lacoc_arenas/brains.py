@@ -133,13 +133,18 @@ def ghost_join(record: Record, seat: int) -> JoinSeat:
 
 
 def ghost(record: Record, seat: int) -> Brain:
-    """Make a brain that presses the keys of a record again, each at its recorded clock time."""
+    """Make a brain that presses keys of a record again, each at its recorded clock time.
+
+    Keys that were refused, for example those before play, had no effect and are left out.
+    """
     keys: deque[tuple[int, Key]] = deque()
-    clock_of = {beat: decode(encoded, Frame) for beat, encoded in record.frames}
+    frame_of = {beat: decode(encoded, Frame) for beat, encoded in record.frames}
     for beat in sorted(record.inputs):
-        frame = clock_of.get(beat)
+        frame = frame_of.get(beat)
+        if frame is None or frame.seats[seat].applied_beat != beat:
+            continue
         for item in record.inputs[beat]:
-            if isinstance(item, KeySeat) and item.seat == seat and frame is not None:
+            if isinstance(item, KeySeat) and item.seat == seat:
                 keys.append((frame.clock_ticks, Key(Level(item.level), item.key)))
 
     def brain(frame: Frame) -> Key | None:

@@ -20,7 +20,7 @@ from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
 from lacoc_shared.gait.tables import Gait, Level, LocomotionTable, PostureTable
 from lacoc_shared.gait.text import decoded, read_gait
-from lacoc_shared.mistakes import FileRefused, UserError
+from lacoc_shared.mistakes import FileRefused, UserError, printable, text_of
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer(
@@ -123,8 +123,8 @@ def import_header(
     such as 0.5*ROBOT_BODY_W. Nothing is compiled. Each line that can't be read is named, and the
     workshop's own numbers stand in its place. A file of the same name is kept.
     """
-    sources = [CFile(file.name, _c_text(file)) for file in files]
-    made = import_robot(sources, name)
+    sources = [CFile(printable(file.name), _c_text(file)) for file in files]
+    made = import_robot(sources, text_of(name))
     kept = save(out, made.toml.encode())
     for note in made.notes:
         screen.warn(note)

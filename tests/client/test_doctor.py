@@ -186,6 +186,15 @@ def test_the_port_of_another_court(capsys: pytest.CaptureFixture[str], tmp_path:
         assert doctor.court_port("127.0.0.1", port, None).status is Status.OK
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="needs two addresses of this machine")
+def test_a_court_is_asked_at_its_own_address() -> None:
+    """Doctor recognises a court that listens at one address of this machine only."""
+    with CourtStub(listen="127.0.0.2:0") as court:
+        host, port = court.address.partition("/")[2].split(":")
+        found = doctor.court_port(host, int(port), "main")
+    assert (found.status, render(found.found)) == (Status.OK, "court main runs here")
+
+
 def test_a_court_that_stands_still() -> None:
     """Doctor reports that a court stands still and that its record can't be written."""
     with CourtStub() as court:

@@ -1,5 +1,6 @@
 """What `lacoc doctor` finds at the public address of a contest's pages."""
 
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +16,7 @@ from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
 from waiting import LIMIT_S
 
-from lacoc_client.commands.checks.machine import Finding, Status
+from lacoc_client.commands.checks.machine import Finding, Status, web_port
 from lacoc_client.commands.checks.pages import _reached, pages, plain_courts
 from lacoc_client.web.gateway import server
 from lacoc_client.web.gateway.files import PageFiles
@@ -35,11 +36,11 @@ async def _page(websocket: WebSocket) -> None:
 
 
 @contextmanager
-def gateway(public: PublicAddress, port: int) -> Iterator[None]:
+def gateway(public: PublicAddress, port: int, host: str = "127.0.0.1") -> Iterator[None]:
     """Serve the pages of a contest."""
     files, ended = PageFiles(), threading.Event()
     app = Starlette(routes=page_routes(files, ["/"], [WebSocketRoute("/ws", _page)], TITLE))
-    with server.listen(f"127.0.0.1:{port}", public) as opened:
+    with server.listen(f"{host}:{port}", public) as opened:
         thread = threading.Thread(target=server.serve, args=(app, opened, ended.is_set))
         thread.start()
         try:
@@ -78,6 +79,19 @@ def test_a_right_address_is_ok(tmp_path: Path, authority: trustme.CA) -> None:
             ("certificate-found", "pages-found", "websocket-found"), Status.OK
         )
         assert found(public, "Other Cup")["pages-another"] is Status.PROBLEM
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="needs two addresses of this machine")
+@pytest.mark.parametrize("encrypted", [False, True])
+@pytest.mark.parametrize("host", ["0.0.0.0", "127.0.0.2"])
+def test_a_gateway_is_asked_at_its_own_address(tmp_path: Path, host: str, encrypted: bool) -> None:
+    """Doctor recognises a gateway that listens at one address only, or that is encrypted."""
+    port = free_port()
+    pair = proxies.issue(tmp_path, trustme.CA(), "uni.example")
+    public = PublicAddress.of("https://uni.example", *pair) if encrypted else PublicAddress()
+    with gateway(public, port, host):
+        finding = web_port(host, port, needed=True)
+    assert (code(finding), finding.status) == ("pages-run", Status.OK)
 
 
 @pytest.mark.parametrize(

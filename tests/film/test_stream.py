@@ -1,10 +1,12 @@
 """Tests of `lacoc stream`: its pace, its sound, and what a video server gets of a real match."""
 
 import signal
+import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +21,15 @@ from show import decide, playing
 from venue import Venue
 from waiting import LIMIT_S, until
 
+from lacoc_client.film.live import sender
 from lacoc_client.film.live.mixer import Mixer
 from lacoc_client.film.live.pace import PicturePace
-from lacoc_client.film.live.target import target
+from lacoc_client.film.live.sender import SOUND_HZ, LivePicture, Sender
+from lacoc_client.film.live.target import Target, target
+from lacoc_client.film.movie import Movie
 from lacoc_shared.mistakes import UserError
 
-SIZE = (320, 180)
+SIZE, FPS = (320, 180), 10
 SCORE = np.s_[0:24, 110:145]
 """Where the left score stands in a picture of this size."""
 
@@ -75,6 +80,100 @@ def test_where_a_stream_can_go(tmp_path: Path) -> None:
     for wrong in ("http://a.example", f"{tmp_path}/a.avi", f"{tmp_path}/none/a.mkv"):
         with pytest.raises(UserError):
             target(wrong)
+
+
+@pytest.fixture(scope="module")
+def picture() -> bytes:
+    """Give a picture as the browser takes it."""
+    encoder = av.CodecContext.create("mjpeg", "w")
+    (encoder.width, encoder.height), encoder.pix_fmt = SIZE, "yuvj420p"
+    encoder.time_base = Fraction(1, FPS)
+    packets = [*encoder.encode(av.VideoFrame(*SIZE, "yuvj420p")), *encoder.encode(None)]
+    return bytes(packets[0])
+
+
+class Streamer:
+    """Gives a sender pictures with their sounds, as the browser's page does."""
+
+    def __init__(self, where: Target, picture: bytes) -> None:
+        self.told: list[str] = []
+        self.count = 0
+        self._picture = picture
+        self.sender = Sender(where, SIZE, FPS, lambda phrase: self.told.append(phrase.code))
+
+    def until(self, true: Callable[[], object]) -> None:
+        """Give pictures until a condition is true."""
+
+        def give() -> bool:
+            self.sender.hear(self.count / FPS, bytes(4 * SOUND_HZ // FPS))
+            self.sender.show(LivePicture(self.count, self._picture))
+            self.count += 1
+            return bool(true())
+
+        until(give)
+
+
+def test_what_a_server_does_is_told_once(picture: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A server that refuses is told once, its return when it takes the stream, and a new loss."""
+    tries = []
+
+    def counted(*given: Any) -> Movie:
+        tries.append(given)
+        return Movie(*given)
+
+    monkeypatch.setattr(sender, "Movie", counted)
+    monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
+        streamer.until(lambda: len(tries) > 3)
+        assert streamer.told == ["stream.away"]
+        server.listen()
+        streamer.until(lambda: len(streamer.told) > 1)
+        assert streamer.told[1:] == ["stream.back"]
+        server.accept()[0].close()
+        streamer.until(lambda: len(streamer.told) > 2)
+        assert streamer.told[2] == "stream.away"
+        streamer.sender.end()
+
+
+def test_the_sounds_of_pictures_that_are_left_out_go_too(
+    picture: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the server is away, no sound is kept that nobody will hear."""
+    taken = []
+
+    class Watched(Mixer):
+        def take(self, until: int) -> bytes:
+            taken.append(until)
+            return super().take(until)
+
+    monkeypatch.setattr(sender, "Mixer", Watched)
+    monkeypatch.setattr(sender, "_AGAIN_S", 2 * LIMIT_S)
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
+        streamer.until(lambda: streamer.told)
+        away = streamer.count
+        streamer.until(lambda: taken[-1] > away * SOUND_HZ // FPS)
+        streamer.sender.end()
+
+
+def test_an_address_that_no_server_can_have_is_away(picture: bytes) -> None:
+    """An error of FFmpeg that is no error of the system is told too."""
+    streamer = Streamer(target("tcp://no-port"), picture)
+    streamer.until(lambda: streamer.told)
+    assert streamer.told == ["stream.away"]
+    streamer.sender.end()
+
+
+def test_a_protocol_that_ffmpeg_lacks_ends_the_stream(picture: bytes) -> None:
+    """No server can come back by it."""
+    streamer = Streamer(Target("lacoc://127.0.0.1/key", "mpegts", is_remote=True), picture)
+    streamer.until(lambda: streamer.sender.failed)
+    assert isinstance(streamer.sender.failed, av.ProtocolNotFoundError)
+    assert streamer.told == []
+    streamer.sender.end()
 
 
 @pytest.fixture

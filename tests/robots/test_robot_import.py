@@ -116,6 +116,16 @@ def test_each_way_to_write_a_number_is_read(
         ("0.125,", "0.125, ...,", "header.not-read", "Robot_weight"),
         ("0.125,", "0.125, 1 2,", "header.not-read", "Robot_weight"),
         ("_LEG_L + ROBOT", "_LEG_L / 0 + ROBOT", "header.not-read", "Start_Pos"),
+        ("_W 0.1 ", "_W 0", "header.no-side", "ROBOT_BODY_W"),
+        ("_H 0.05 ", "_H (0.1 - 0.1)", "header.no-side", "ROBOT_BODY_H"),
+        ("_D 0.12 ", "_D 1e999", "header.not-read", "ROBOT_BODY_D"),
+        ("_D 0.12 ", "_D (int)(1e999)", "header.not-read", "ROBOT_BODY_D"),
+        ("_D 0.12 ", "_D (int)(1e999 - 1e999)", "header.not-read", "ROBOT_BODY_D"),
+        ("_D 0.12 ", f"_D {'9' * 400}", "header.not-read", "ROBOT_BODY_D"),
+        ("_D 0.12 ", f"_D {'9' * 400} / 3", "header.not-read", "ROBOT_BODY_D"),
+        ("_D 0.12 ", f"_D {'9' * 5000}", "header.not-read", "ROBOT_BODY_D"),
+        ("0.125,", "1e999,", "header.not-read", "Robot_weight"),
+        ("0.125,", "0.125, \x01,", "header.not-read", "Robot_weight"),
         ("AngMin=1.2", "AngMin=speed()", "header.not-read", "AngMin"),
         ("AngMin=1.2", "AngMin", "header.missing", "AngMin"),
         ("dReal Robot_weight", "dReal Robot_mass", "header.missing", "Robot_weight"),
@@ -156,6 +166,12 @@ def test_no_file_breaks_the_reader(text: str) -> None:
     found = read_c("double x = 1;\n" + text)
     for value in found.values.values():
         assert isinstance(value, int | float | tuple)
+
+
+@given(st.text(max_size=30))
+def test_any_name_is_kept(name: str) -> None:
+    """Whatever is in the robot's name, the robot file can be read."""
+    assert tomllib.loads(import_robot([], name).toml)["name"] == name
 
 
 def test_the_command_writes_the_file_and_keeps_an_older_one(

@@ -1,5 +1,6 @@
 """Tests of forks of a record: unchanged forks repeat it bit for bit, others go on as at a court."""
 
+import dataclasses
 import json
 import shutil
 from pathlib import Path
@@ -24,7 +25,7 @@ from lacoc_server.simulate.forks.origin import ForkSource, read_source
 from lacoc_server.simulate.forks.script import Script
 from lacoc_shared.codec import decode, encode
 from lacoc_shared.decisions import TakeBack
-from lacoc_shared.inputs import Decide, KeySeat, SilentSeat
+from lacoc_shared.inputs import Decide, HeardSeat, KeySeat, SilentSeat
 from lacoc_shared.messages import DecisionReply
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.commands import app as record_app
@@ -122,6 +123,17 @@ def test_a_take_back_agrees_with_the_dry_run(source: ForkSource, tmp_path: Path)
         fork(
             source, events[0][0] - 5, ForkChange(take_back=events[0][1])
         )  # it has not happened yet
+
+
+def test_a_short_fork_has_its_take_back(source: ForkSource) -> None:
+    """A take-back waits for a beat without recorded inputs; a fork does not end before it."""
+    at, number = flips(source)[0]
+    busy = {beat: [HeardSeat(0)] for beat in (at + 1, at + 2, at + 3)}
+    record = dataclasses.replace(source.record, inputs={**source.record.inputs, **busy})
+    changed = dataclasses.replace(source, record=record)
+    forked = fork(changed, at + 1, ForkChange(take_back=number), seconds=0.02)
+    assert (forked.decided_beat, forked.beats) == (at + 4, 4)
+    assert forked.changes
 
 
 @pytest.mark.slow

@@ -89,7 +89,7 @@ def test_the_hash_is_of_what_is_drawn() -> None:
     assert World(ground, [entry()] * 2).scene_hash == worlds[1].scene_hash
 
 
-@pytest.mark.parametrize("kind", ["slide", "offset", "hill"])
+@pytest.mark.parametrize("kind", ["slide", "offset", "hinge", "robot's", "two", "hill"])
 def test_what_pages_cannot_draw_is_said(kind: str) -> None:
     """A field with a joint or shape that pages can't draw is refused with this reason."""
     spec = mujoco.MjSpec()
@@ -101,8 +101,13 @@ def test_what_pages_cannot_draw_is_said(kind: str) -> None:
         spec.add_hfield(name="h", size=[1, 1, 1, 1], nrow=2, ncol=2, userdata=[0.0, 0, 0, 1])
     elif kind == "slide":
         body.add_joint(name="rail", type=mujoco.mjtJoint.mjJNT_SLIDE)
-    else:
-        body.add_joint(name="hinge/j0", pos=[0.1, 0, 0])
+    elif kind == "offset":
+        body.add_joint(name="solo/j0", pos=[0.1, 0, 0])
+    elif kind == "two":
+        body.add_joint(name="solo/j0")
+        body.add_joint(name="solo/j1", axis=[1, 0, 0])
+    else:  # the frame has no angle for a hinge of the field
+        body.add_joint(name="hinge/j0" if kind == "robot's" else "hinge")
     body.add_geom(size=[0.1, 0.1, 0.1])
     with pytest.raises(UserError, match="pages can't draw"):
         make_scene(spec.compile(), arenas.load("practice").game, ["solo"])

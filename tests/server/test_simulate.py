@@ -6,17 +6,36 @@ from pathlib import Path
 import msgspec
 import pytest
 from handed_in import handed_in, players_of, sample
-from stage import join, setup
+from stage import (
+    FORWARD,
+    LEFT,
+    RIGHT,
+    STAND,
+    TURN_LEFT,
+    TURN_RIGHT,
+    B,
+    Stage,
+    X,
+    decide,
+    join,
+    key,
+    setup,
+)
 
 from lacoc_arenas import arena as arenas
+from lacoc_arenas.bot import Key
+from lacoc_arenas.brains import ghost
 from lacoc_robots.library import find_robot
 from lacoc_server.commands import simulate as simulate_commands
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_server.match.match import Match
 from lacoc_server.simulate import SETTLE_BEATS, Player, player, simulate
 from lacoc_server.world.world import World
-from lacoc_shared.codec import decode
-from lacoc_shared.messages import Frame
+from lacoc_shared.codec import decode, encode
+from lacoc_shared.decisions import Halt, Resume, Start
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.inputs import Input, KeySeat
+from lacoc_shared.messages import Done, Frame
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.reader import Record
 from lacoc_shared.record.schema import Result
@@ -85,6 +104,38 @@ def test_ghosts_of_both_seats_play_their_match_again(tmp_path: Path) -> None:
     again = simulate(setup("othello", SHORT), ghosts)
     assert again.digest == result.digest
     assert again.teams == ("nearest's ghost", "straight's ghost")
+
+
+def test_a_ghost_presses_only_keys_that_had_an_effect() -> None:
+    """Keys that were refused before play, in a halt and after an [x] are not pressed again."""
+    stage = Stage(overrides={"match": {"countdown_s": 0.2, "restart_freeze_s": 0.2}}).to_ready()
+    inputs: dict[int, list[Input]] = {}
+    had_effect: dict[int, Key] = {}
+
+    def beat(*items: Input) -> None:
+        inputs[stage.match.beats + 1] = [*items]
+        for item, outcome in zip(items, stage.beat(*items).outcomes, strict=True):
+            if isinstance(item, KeySeat) and item.seat == LEFT and outcome == Done():
+                had_effect[stage.match.beats] = Key(Level(item.level), item.key)
+
+    beat(key(LEFT, FORWARD, 1))
+    beat(decide(Start()))
+    beat(key(LEFT, X, 2))
+    stage.until(Phase.PLAYING)
+    for number, one in enumerate((FORWARD, TURN_LEFT, X, STAND)):
+        beat(key(LEFT, one, 3 + number), key(RIGHT, FORWARD, 3 + number))
+    beat(decide(Halt()))
+    beat(key(LEFT, X, 7))
+    beat(decide(Resume()))
+    stage.until(Phase.PLAYING)
+    stage.run(20)
+    beat(key(LEFT, TURN_RIGHT, 8))
+    assert [*had_effect.values()] == [(B, FORWARD), (B, TURN_LEFT), (B, X), (B, TURN_RIGHT)]
+    frames = [one.frame for one in stage.beats]
+    record = Record(inputs=inputs, frames=[(frame.beat, encode(frame)) for frame in frames])
+    brain = ghost(record, LEFT)
+    pressed = {frame.beat + 1: brain(frame) for frame in frames}
+    assert {at: one for at, one in pressed.items() if one is not None} == had_effect
 
 
 def test_a_match_without_end_is_refused() -> None:

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from datetime import datetime
+from pathlib import Path
 
 import pytest
 from waiting import LIMIT_S
@@ -115,6 +116,42 @@ def test_a_pipe_that_nobody_reads_holds_nothing() -> None:
         rest = process.stdout.read().splitlines()
     assert numbers == [*range(5000)]
     assert 5000 <= len(rest) < 25_000
+
+
+FULL_FOR_A_MOMENT = """
+import io, resource, sys, threading
+from lacoc_shared.command import log
+
+failed = threading.Event()
+
+class Disk(io.FileIO):
+    def write(self, data):
+        try:
+            return super().write(data)
+        except OSError:
+            failed.set()
+            raise
+
+sys.stdout = io.TextIOWrapper(io.BufferedWriter(Disk(sys.argv[1], "w")))
+log.start(True)
+_, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+resource.setrlimit(resource.RLIMIT_FSIZE, (0, most))
+log.get().info("while it is full")
+assert failed.wait(60)
+resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+log.get().info("when there is room")
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit for files")
+def test_a_disk_that_is_full_for_a_moment_ends_no_log(tmp_path: Path) -> None:
+    """The log goes on when there is room again."""
+    path = tmp_path / "log"
+    subprocess.run(
+        [sys.executable, "-c", FULL_FOR_A_MOMENT, str(path)], check=True, timeout=LIMIT_S
+    )
+    lines = [json.loads(line)["text"] for line in path.read_text().splitlines()]
+    assert lines == ["while it is full", "when there is room"]
 
 
 @pytest.mark.parametrize("as_json", [False, True])

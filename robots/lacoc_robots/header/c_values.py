@@ -6,6 +6,7 @@ Only declarations outside of functions are read. An expression may have numbers,
 
 import math
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple, TypeAlias
@@ -135,11 +136,32 @@ def _take(
     line = tokens[0].line if tokens else 0
     try:
         whole = [*islice(_expanded(tokens, macros, (name,)), _MOST_TOKENS)]
-        found.values[name] = _Expression(whole, found.values).value()
+        found.values[name] = _checked(_Expression(whole, found.values))
         found.lines[name] = line
     except _CanNotRead as error:
         text = f"{name} = {' '.join(token.text for token in tokens)}"
         found.unread.append(Unread(name, line, text, error.why))
+
+
+def _checked(expression: "_Expression") -> Value:
+    """Return the value of an expression; all its numbers are finite.
+
+    Raises:
+        _CanNotRead: if there is no such value.
+    """
+    try:
+        value = expression.value()
+    except (OverflowError, ValueError):  # Python's own: infinite, or thousands of digits
+        raise _CanNotRead(say("header.too-large")) from None
+    if not _is_finite(value):
+        raise _CanNotRead(say("header.too-large"))
+    return value
+
+
+def _is_finite(value: Value) -> bool:
+    if isinstance(value, tuple):
+        return all(map(_is_finite, value))
+    return abs(value) <= sys.float_info.max  # also a whole number must be a number in C
 
 
 class _Declarations:

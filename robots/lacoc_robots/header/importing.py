@@ -4,8 +4,11 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+import tomlkit
+
 from lacoc_robots.header.c_values import Unread, Value, read_c
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
+from lacoc_shared.mistakes import printable
 from lacoc_shared.words import LANGUAGES, Phrase, render, say
 
 DEFAULTS = {
@@ -17,6 +20,7 @@ DEFAULTS = {
     "AngMin": 1.2,
 }
 """The workshop's own numbers, used in place of values that a file does not have."""
+_SIDES = ("ROBOT_BODY_W", "ROBOT_BODY_D", "ROBOT_BODY_H")
 _NAMES = (*DEFAULTS, "RJOINT_NUM", "Start_Pos", "Robot_weight", "Joint_Angle")
 _PLACES = ("Rjoint_x", "Rjoint_y", "Rjoint_z")
 _WEIGHTS_KG = (0.125, 0.055)
@@ -67,7 +71,7 @@ def import_robot(sources: Sequence[CFile], name: str) -> Imported:
     notes = []
     for file, one in unread.values():
         notes.append(say("header.not-read", file=file, line=one.line, name=one.name, why=one.why))
-        lines += ["", f"# Not read: {file}, line {one.line}: {one.text[:160]}"]
+        lines += ["", f"# Not read: {file}, line {one.line}: {printable(one.text, 160)}"]
     told = {*unread, *header.wrong}
     notes += [note for names, note in header.missing if told.isdisjoint(names)]
     return Imported("\n".join(lines) + "\n", (*notes, *header.wrong.values()))
@@ -84,8 +88,9 @@ class _HeaderRobot:
         files, and a note."""
         self.wrong: dict[str, Phrase] = {}
         """For each name whose value is there but can't be used: a note."""
-        self._w, self._d, self._h, self._radius, self._link, self._ang_min = (
-            self._number(name) for name in DEFAULTS
+        self._w, self._d, self._h = map(self._side, _SIDES)
+        self._radius, self._link, self._ang_min = (
+            self._number(name) for name in DEFAULTS if name not in _SIDES
         )
         count = values.get("RJOINT_NUM", 18)
         joints = count if isinstance(count, int) else 18
@@ -95,14 +100,13 @@ class _HeaderRobot:
 
     def toml(self, name: str) -> Iterator[str]:
         """Return the lines of the robot file that is made."""
-        h = 0.5 * self._h
         yield f"# Made by 'lacoc robot import'. {render(say('header.look'), LANGUAGES[0])}"
         yield ""
-        yield f'name = "{name}"'
+        yield f"name = {tomlkit.string(name).as_string()}"
         yield ""
         yield "[body]"
         size = ", ".join(map(_shown, (self._w, self._d, self._h)))
-        yield f"size_m = [{size}]  # {self._from('ROBOT_BODY_W', 'ROBOT_BODY_D', 'ROBOT_BODY_H')}"
+        yield f"size_m = [{size}]  # {self._from(*_SIDES)}"
         body_kg, links_kg = self._weights()
         yield f"mass_kg = {_shown(body_kg)}  # {self._from('Robot_weight')}"
         yield ""
@@ -127,7 +131,7 @@ class _HeaderRobot:
         yield f"range_deg = {_RANGE_DEG}"
         for leg, (x, y, z) in enumerate(self._hinges()):
             label = _label(leg, self._legs)
-            place = (x / (0.5 * self._w), y / (0.5 * self._d), z / h)
+            place = (2 * x / self._w, 2 * y / self._d, 2 * z / self._h)
             yield ""
             yield "[[leg]]"
             yield f'label = "{label}"'
@@ -137,6 +141,14 @@ class _HeaderRobot:
                 yield f"masses_kg = [{', '.join(map(_shown, links_kg[leg]))}]"
             if leg in (0, self._legs - 1):
                 yield "accent = true"
+
+    def _side(self, name: str) -> float:
+        """Return the length of a side of the body [m]; the places of legs are shares of it."""
+        length = self._number(name)
+        if length:
+            return length
+        self.wrong[name] = say("header.no-side", name=name, place=self._places.get(name, ""))
+        return DEFAULTS[name]
 
     def _number(self, name: str) -> float:
         value = self._values.get(name)

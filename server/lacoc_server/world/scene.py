@@ -32,7 +32,8 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
 
     Raises:
         UserError: if pages can't draw the model, or a geom's marker or state does not exist. Pages
-            know free roots, one hinge through a body's origin, and the geom types in `_TYPES`.
+            know free roots, one hinge of a robot through a body's origin, and the geom types in
+            `_TYPES`.
     """
     bodies = tuple(_body(model, index, seats) for index in range(model.nbody))
     geoms = []
@@ -64,13 +65,14 @@ def make_scene(model: Any, game: AnyGame, seats: Sequence[str]) -> Scene:
 def _body(model: Any, index: int, seats: Sequence[str]) -> SceneBody:
     body = model.body(index)
     seat, joint, axis = -1, -1, (0.0, 0.0, 1.0)
-    for joint_index in range(int(body.jntadr[0]), int(body.jntadr[0]) + int(body.jntnum[0])):
-        described = model.joint(joint_index)
-        kind = mujoco.mjtJoint(int(described.type[0]))
-        if kind == mujoco.mjtJoint.mjJNT_FREE:
+    if int(body.jntnum[0]) > 1:
+        raise UserError(say("scene.joints", name=body.name))
+    if int(body.jntnum[0]):
+        described = model.joint(int(body.jntadr[0]))
+        joint = _hinge(described, seats)
+        if described.type[0] == mujoco.mjtJoint.mjJNT_FREE:
             seat = _seat(body.name, seats)
-        elif kind == mujoco.mjtJoint.mjJNT_HINGE and not np.any(described.pos):
-            joint = int(described.name.rsplit("/j", 1)[1])
+        elif joint >= 0:
             axis = _floats(described.axis)
         else:
             raise UserError(say("scene.joint", name=described.name))
@@ -83,6 +85,13 @@ def _body(model: Any, index: int, seats: Sequence[str]) -> SceneBody:
         joint=joint,
         axis=axis,
     )
+
+
+def _hinge(joint: Any, seats: Sequence[str]) -> int:
+    """Return the joint id of a robot's hinge through a body's origin; -1: it is another joint."""
+    seat, _, number = joint.name.partition("/j")
+    is_hinge = joint.type[0] == mujoco.mjtJoint.mjJNT_HINGE and not np.any(joint.pos)
+    return int(number) if is_hinge and seat in seats and number.isdecimal() else -1
 
 
 def _seat(name: str, seats: Sequence[str]) -> int:

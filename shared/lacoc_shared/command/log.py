@@ -64,8 +64,10 @@ class _Writer:
             try:
                 sys.stdout.write(f"{line}\n")
                 sys.stdout.flush()
-            except (OSError, ValueError):  # the reader has gone
+            except (BrokenPipeError, ValueError):  # the reader has gone
                 return
+            except OSError:  # the disk is full; standard output writes later what it could buffer
+                continue
 
 
 def start(as_json: bool) -> None:

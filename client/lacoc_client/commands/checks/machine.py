@@ -5,14 +5,15 @@ is written beside the records and removed.
 """
 
 import ctypes.util
+import http.client
 import os
 import platform
 import shutil
 import socket
+import ssl
 import statistics
 import sys
 import time
-import urllib.error
 import urllib.request
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -23,12 +24,14 @@ from pathlib import Path
 import msgspec
 from packaging.requirements import Requirement
 
+from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_shared import __version__
 from lacoc_shared.command import installing
 from lacoc_shared.command.priority import go_first
 from lacoc_shared.keyspace import EVERY_COURT
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.address import ANY_HOST
 from lacoc_shared.network.session import open_client
 from lacoc_shared.seat import BEAT_S
 from lacoc_shared.words import Phrase, render, say
@@ -43,6 +46,8 @@ _SLOW_FSYNC_S = 0.5
 second."""
 _SLOW_PERCENT, _TOO_SLOW_PERCENT = 1.0, 10.0
 _ASK_S = 1.0
+_ANY_REACHED = dict(zip(ANY_HOST, ("127.0.0.1", "::1"), strict=True))
+"""How this machine reaches a program that listens at every address."""
 
 
 class Status(StrEnum):
@@ -149,7 +154,8 @@ def court_port(
     if not why:
         return Finding(about, Status.OK, say("doctor.port-free-court", host=host))
     try:
-        with open_client([f"{protocol}/127.0.0.1:{port}"], _ASK_S, authority) as session:
+        at = f"{protocol}/{_reached(host, port)}"
+        with open_client([at], _ASK_S, authority) as session:
             courts = [key.split("/")[1] for key in session.present(EVERY_COURT)]
     except UserError:
         courts = []
@@ -174,16 +180,34 @@ def web_port(host: str, port: int, *, needed: bool) -> Finding:
     why: Phrase | str = _why_taken(host, port)
     if not why:
         return Finding(about, Status.OK, say("doctor.port-free-pages", host=host))
-    try:
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=_ASK_S) as reply:
-            ours = b"LACOC" in reply.read(_MIB)
-    except (OSError, ValueError, urllib.error.URLError):
-        ours = False
-    if ours:
+    if any(_is_gateway(f"{scheme}://{_reached(host, port)}") for scheme in ("http", "https")):
         return Finding(about, Status.OK, say("doctor.pages-run"))
     status = Status.PROBLEM if needed else Status.NOTE
     todo = say("doctor.pages-port-todo")
     return Finding(about, status, say("doctor.pages-port", host=host, why=why), todo)
+
+
+def _reached(host: str, port: int) -> str:
+    """Return the address, "HOST:PORT", at which this machine reaches a program that has a port.
+
+    Args:
+        host: address of this machine at which the program listens.
+        port: the port.
+    """
+    here = _ANY_REACHED.get(host, host)
+    return f"[{here}]:{port}" if ":" in here else f"{here}:{port}"
+
+
+def _is_gateway(url: str) -> bool:
+    context = ssl.create_default_context()
+    context.check_hostname = False  # a certificate proves the public name, not this address
+    context.verify_mode = ssl.CERT_NONE
+    try:
+        with urllib.request.urlopen(f"{url}/healthz", timeout=_ASK_S, context=context) as reply:
+            msgspec.json.decode(reply.read(_MIB), type=GatewayHealth)
+    except (OSError, http.client.HTTPException, msgspec.MsgspecError):
+        return False
+    return True
 
 
 def _why_taken(host: str, port: int) -> str:

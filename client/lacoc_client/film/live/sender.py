@@ -55,9 +55,10 @@ class Sender:
         """Number of pictures that were sent."""
         self.left_out = 0
         """Number of pictures left out, because the encoder or the server was too slow, or gone."""
-        self.failed: OSError | None = None
-        """Why the file can't be written; the stream has ended then. None: there was no such
-        error."""
+        self.failed: av.FFmpegError | None = None
+        """Why the file can't be written, or why FFmpeg can't reach such a server; the stream has
+        ended then. None: there was no such error."""
+        self._is_away = False
         self._thread.start()
 
     def show(self, picture: LivePicture) -> None:
@@ -83,25 +84,30 @@ class Sender:
         self._thread.join(10 * _AGAIN_S)
 
     def _run(self) -> None:
-        is_away = False
         while not self._ending.is_set():
             try:
-                self._send(is_away)
-            except OSError as error:
-                if not self._target.is_remote:
+                self._send()
+            except av.FFmpegError as error:
+                if not self._target.is_remote or isinstance(error, av.ProtocolNotFoundError):
                     self.failed = error
                     return
-                if not is_away:
+                if not self._is_away:
                     why = error.strerror or str(error)
                     self._tell(say("stream.away", target=self._target.shown, why=why))
-                is_away = True
+                self._is_away = True
                 self._pass(_AGAIN_S)
 
     def _pass(self, seconds: float) -> None:
-        """Drop the pictures in the queue and those of the next `seconds`; the end stops it."""
+        """Drop the pictures in the queue and those of the next `seconds`, with their sounds.
+
+        The end stops it.
+        """
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():
-            self.left_out += self._next() is not None
+            picture = self._next()
+            if picture is not None:
+                self.left_out += 1
+                self._sound_until(picture.number + 1)
 
     def _next(self) -> LivePicture | None:
         try:
@@ -109,11 +115,11 @@ class Sender:
         except Empty:
             return None
 
-    def _send(self, was_away: bool) -> None:
+    def _send(self) -> None:
         """Open the stream's target, and send it pictures and sounds until the stream ends.
 
         Raises:
-            OSError: if the target can't be written.
+            FFmpegError: if the target can't be written.
         """
         first = None
         with av.open(
@@ -127,8 +133,10 @@ class Sender:
                 if first is None:
                     first = picture.number
                     self._sound_until(first)
-                    if was_away:
+                    container.start_encoding()  # the server is asked here
+                    if self._is_away:
                         self._tell(say("stream.back", target=self._target.shown))
+                    self._is_away = False
                 film.hear(self._sound_until(picture.number + 1))
                 film.add(picture.data, picture.number - first)
                 self.sent += 1

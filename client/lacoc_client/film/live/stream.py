@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
+import av
 from playwright.sync_api import Error, Page
 
 from lacoc_client.film.camera_page import window
@@ -77,7 +78,8 @@ class _Streaming:
 
         Raises:
             UserError: if there is no browser.
-            OSError: if the target is a file and can't be written.
+            FFmpegError: if the target is a file that can't be written, or FFmpeg can't reach such
+                a server.
         """
         while not stopping():
             with window(self._look) as (page, paced):
@@ -174,13 +176,14 @@ def stream(
         report: called every 10 s.
 
     Raises:
-        UserError: if there is no browser, or a file can't be written.
+        UserError: if there is no browser, a file can't be written, or FFmpeg can't reach such a
+            server.
     """
     running = _Streaming(source, target, look, fps, tell)
     try:
         running.run(stopping, report)
-    except OSError as error:
+    except av.FFmpegError as error:
         why = error.strerror or str(error)
-        raise UserError(say("command.cannot-write", path=target.address, why=why)) from None
+        raise UserError(say("command.cannot-write", path=target.shown, why=why)) from None
     finally:
         running.sender.end()

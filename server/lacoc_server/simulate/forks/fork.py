@@ -29,7 +29,7 @@ class Forked:
     beats: int
     """Beats that the fork played itself."""
     decided_beat: int | None
-    """Beat with the decisions of the change; None: it had none, or the fork ended before them."""
+    """Beat with the decisions of the change; None: it had none."""
     changes: tuple[Phrase, ...]
     """Events that a take-back removed or made new."""
     left_out: int
@@ -58,7 +58,8 @@ def fork(
         changes: the same change, as the fork's record describes it; None: the record does not.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
-        seconds: how long the fork goes on at most [s]; None: until play ends.
+        seconds: how long the fork goes on at most [s], but until its change is made; None: until
+            play ends.
         arena: folder of the arena, if it is not installed.
 
     Raises:

@@ -60,7 +60,8 @@ class ForkLine:
         record: the record of the match, whole.
         match: the match after the beat before the fork.
         change: how the fork differs from the record.
-        seconds: how long the fork goes on at most [s]; None: until play ends.
+        seconds: how long the fork goes on at most [s], but until its change is made; None: until
+            play ends.
     """
 
     def __init__(
@@ -89,10 +90,10 @@ class ForkLine:
     def is_over(self) -> bool:
         """True if the fork is over, so that no further beat is played."""
         match = self.match
-        if self._limit is not None and match.beats >= self._limit:
-            return True
         if match.beats < max(self._first, self._decides_at):
             return False
+        if self._limit is not None and match.beats >= self._limit:
+            return True
         if not self._change.is_none and match.phase is Phase.FINISHED:
             return True  # nobody makes the result of a changed fork official
         if match.beats < self._last_recorded + self._shift:
