@@ -1,8 +1,8 @@
 """How well a court holds a match: measured on the wall clock and on the links of its seats.
 
-Pure: times, counts and beats come in, the verdict comes out. The match is the same at any speed and
-with any loss of messages, so the verdict is not part of it. The record has the verdict as a message
-of its own. Only its advice enters the match, as an input (docs/architecture.md).
+Pure: times, counts and beats come in, the verdict comes out. A match follows from its inputs alone,
+however fast it ran, so the verdict is not part of it. The record has the verdict as a message of
+its own. Only the advice to play again, which the referee reads, enters the match as an input.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""The card of a student for the teacher: how far and how fast the student is, who needs help."""
+"""The card of a student for the teacher: the phase, the robot's speed, whether help is needed."""
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise

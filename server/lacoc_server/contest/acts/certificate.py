@@ -103,8 +103,8 @@ def _with_entries(file: Path) -> tuple[bytes, ContestFile]:
         The file as bytes, and the same as a `ContestFile`.
 
     Raises:
-        UserError: if the file can't be read, has a mistake, or names a certificate that was not
-            made here.
+        UserError: if the file can't be read or has a mistake, or if it names other files than those
+            that `make_certificate` writes.
     """
     try:
         data = file.read_bytes()

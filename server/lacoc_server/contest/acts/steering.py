@@ -43,8 +43,8 @@ def moving(
         courts: names of its courts.
         pairing: the match; its teams need not be known yet.
         court: the only court for it; "": any court.
-        before: the match directly before which this one is played; "": it keeps its place in the
-            schedule.
+        before: the match directly before which this one is played; "": its own place in the
+            schedule, also if it was moved before.
         not_before_ms: when it is called at the earliest, in milliseconds since 1970, UTC; 0: at any
             time.
 

@@ -1,4 +1,4 @@
-"""The picture of a team: a picture that its members send becomes a small square WebP."""
+"""The picture of a team: what is handed in with its files becomes a small square WebP."""
 
 import io
 
