@@ -4,6 +4,7 @@ import socket
 import threading
 import urllib.error
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -25,7 +26,7 @@ def pages(request: pytest.FixtureRequest) -> Pages:
 
     def serve(raw: bytes) -> str:
         listener = socket.create_server(("127.0.0.1", 0))
-        request.addfinalizer(lambda: listener.shutdown(socket.SHUT_RDWR))
+        request.addfinalizer(lambda: _close(listener))
 
         def answer() -> None:
             while True:
@@ -41,6 +42,12 @@ def pages(request: pytest.FixtureRequest) -> Pages:
         return f"http://127.0.0.1:{listener.getsockname()[1]}"
 
     return serve
+
+
+def _close(listener: socket.socket) -> None:
+    with suppress(OSError):  # macOS and Windows shut no listener down
+        listener.shutdown(socket.SHUT_RDWR)
+    listener.close()
 
 
 def test_a_whole_file_has_its_tag(pages: Pages) -> None:

@@ -6,13 +6,22 @@ import pytest
 from cup import NOW_MS, Cup
 
 from lacoc_server.contest.desk.overview import slots
-from lacoc_server.contest.league.facts import Called, Moved, Played, Recalled, Withdrawn
+from lacoc_server.contest.league.facts import (
+    Called,
+    Moved,
+    Played,
+    Recalled,
+    Replay,
+    Voided,
+    Withdrawn,
+)
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.timetable.calling import (
     LOST_MS,
     GameEnd,
     SeenCourt,
     calls,
+    in_vain,
     results,
     taken_back,
     wanted,
@@ -138,6 +147,25 @@ def test_a_game_that_is_not_needed_comes_back() -> None:
     said = say("recalled.decided", what=what, reason="a broken leg")
     assert why_recalled(cup.contest, cup.facts, call.id) == said
     assert why_recalled(cup.contest, cup.facts, "no such call") is None
+
+
+def test_a_game_in_play_that_may_still_count_stays() -> None:
+    """Game 2 goes on if game 1 is to be played again, or its sides would be others now."""
+    cup = Cup(games=3)
+    first = called(cup)
+    about = {"pairing": first.pairing, "teams": first.teams, "scores": (3, 1), "outcome": "left"}
+    cup.add(Played, game=1, record="r.mcap", **about)
+    second = called(cup)
+    assert (second.pairing, second.game) == (first.pairing, 2)
+    cup.add(Replay, pairing=first.pairing, game=1, teams=first.teams, reason="a cable")
+    begun = {"north": SeenCourt(NOW_MS, second.id, begun=True)}
+    assert not list(taken_back(cup.contest, begun, NOW_MS))
+    waits = {"north": SeenCourt(NOW_MS, second.id)}
+    assert len(list(taken_back(cup.contest, waits, NOW_MS))) == 1
+    assert not in_vain(cup.contest, second)
+    cup.add(Voided, pairing=first.pairing, teams=first.teams, reason="nobody came")
+    assert in_vain(cup.contest, second)
+    assert len(list(taken_back(cup.contest, begun, NOW_MS))) == 1
 
 
 def test_a_group_called_f_plays_no_final() -> None:

@@ -123,6 +123,19 @@ def test_a_stage_that_is_in_the_file_no_more_is_not_played(tmp_path: Path) -> No
         assert [plan.stage for plan in compute(store.facts(), FORMATS).planned] == ["groups"]
 
 
+def test_a_stage_that_is_renamed_keeps_its_place(tmp_path: Path) -> None:
+    """Stages are drawn in the order of the file, also if the first one has another name now."""
+    cup = '[stage.cup]\nformat = "single-knockout"\nafter = "groups"\n'
+    where = folder(tmp_path, GROUPS + cup)
+    with FactStore(where.facts) as store:
+        note_plans(store, where.plans)
+        renamed = (GROUPS + cup).replace("groups", "league")
+        for stages in (renamed, renamed, GROUPS + cup):
+            note_plans(store, folder(tmp_path, stages).plans)
+            names = [plan.stage for plan in compute(store.facts(), FORMATS).planned]
+            assert names == ["league" if stages is renamed else "groups", "cup"]
+
+
 def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
     """A changed plan is a new fact until its stage is drawn; later the change is refused."""
     where = folder(tmp_path, GROUPS)

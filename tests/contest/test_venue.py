@@ -3,6 +3,8 @@
 import socket
 import urllib.request
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
@@ -67,4 +69,50 @@ def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | N
         pages.kill()
         until(lambda: not pages.is_running() or pages.status() == psutil.STATUS_ZOMBIE)
         until(lambda: is_there(url))
-        assert told == [say("child.again", what=say("child.gateway"), why=None)]
+        assert told[:1] == [say("child.again", what=say("child.gateway"), why=None)]
+
+
+class _Idle:
+    """A process that runs until it is ended."""
+
+    def __init__(self) -> None:
+        self.ended = False
+
+    def poll(self) -> int | None:
+        return 0 if self.ended else None
+
+    def terminate(self) -> None:
+        self.ended = True
+
+    def wait(self, timeout: float) -> None:
+        pass
+
+
+def test_a_bot_with_new_files_plays_its_game_to_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The next game has the new program, also if it is called as soon as the last one ends."""
+    file = tmp_path / "contest.toml"
+    file.write_text(CONTEST + COURT.format(port=0) + SWISS, "utf-8")
+    started: list[tuple[str, _Idle]] = []
+
+    def start(team: str, bot: str, files: str) -> _Idle:
+        started.append((files, _Idle()))
+        return started[-1][1]
+
+    def contest(files: str, *calls: str) -> Any:
+        team = SimpleNamespace(name="Ants", bot="planner", files=files)
+        running = [SimpleNamespace(id=one, teams=("Ants", "Bees")) for one in calls]
+        return SimpleNamespace(teams=(team,), running=running)
+
+    with venue.Bots(ContestFolder(file), {}) as bots:
+        monkeypatch.setattr(bots, "_start", start)
+        monkeypatch.setattr(venue, "_AGAIN_S", 0.0)
+        bots.follow(contest("old", "c1"))
+        bots.follow(contest("new", "c1"))
+        assert [(files, one.ended) for files, one in started] == [("old", False)]
+        bots.follow(contest("new", "c2"))
+        assert [(files, one.ended) for files, one in started] == [("old", True), ("new", False)]
+        bots.follow(contest("new"))
+        bots.follow(contest("newest"))
+        assert [one.ended for _, one in started] == [True, True]

@@ -73,7 +73,7 @@ def test_jobs_fail_while_no_process_can_start_and_are_done_later(
 
     monkeypatch.setattr(workers_module._WorkerProcess, "__init__", full)
     with Workers(1) as few:
-        assert isinstance(few.submit(max, 1, 2).exception(), BlockingIOError)
+        assert isinstance(few.submit(max, 1, 2).exception(), WorkerDied)
         monkeypatch.undo()
         assert few.submit(max, 1, 2).result() == 2
 

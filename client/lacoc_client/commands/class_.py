@@ -133,8 +133,10 @@ def export_command(
     place = out or folder
     keep.make_folder(place)
     for name, data in files.items():
-        keep.save(place / name, data)
+        kept_as = keep.save(place / name, data)
         screen.show(say("class.written", file=str(place / name)))
+        if kept_as is not None:
+            screen.note(say("command.kept", path=str(place / name), kept=str(kept_as)))
 
 
 @app.command(name="forget")

@@ -145,7 +145,7 @@ class _HeaderRobot:
     def _side(self, name: str) -> float:
         """Return the length of a side of the body [m]; the places of legs are shares of it."""
         length = self._number(name)
-        if length:
+        if round(length, 6):  # as it is written
             return length
         self.wrong[name] = say("header.no-side", name=name, place=self._places.get(name, ""))
         return DEFAULTS[name]

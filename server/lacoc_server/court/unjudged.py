@@ -36,8 +36,8 @@ def decisions(match: Match, held: Callable[[], Sequence[bool]]) -> list[Input]:
         return [_decide(Next())] if is_read else []
     if match.phase is not Phase.HALTED or match.beats % _RESUME_BEATS:
         return []
-    if match.halted_by != THE_COURT:
-        return []  # a referee who halts a match resumes it, too
+    if match.halted_by != THE_COURT or match.rules_failed:
+        return []  # a referee who halts a match resumes it, too; wrong rules would fail again
     if any(one and not seat.silent for one, seat in zip(held(), match.seats, strict=True)):
         return [*_put_back(match), _decide(Resume())]
     return []

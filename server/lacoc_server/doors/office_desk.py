@@ -183,8 +183,10 @@ class OfficeDesk(Generic[T]):
         return None
 
     def _withdraw(self, request: Withdraw) -> Answer:
-        if request.why is not None and (error := _wrong_phrase(request.why)):
-            return self._refuse(Why.BAD_BYTES, say("refused.bad-request", error=error))
+        if request.why is not None and _wrong_phrase(
+            request.why
+        ):  # the match must end all the same
+            request = msgspec.structs.replace(request, why=None)
         return self._withdrawn(request) or partial(self._withdrawn, request)
 
     def _withdrawn(self, request: Withdraw) -> Done | Refusal | None:

@@ -261,6 +261,7 @@ class Match(MatchState):
         except UserError as wrong:
             if not self.survives_rules:
                 raise
+            self.rules_failed = True
             self.tell("rules", say("event.rules-failed", why=wrong.phrase))
             self.enter(Phase.HALTED)
             return

@@ -106,6 +106,8 @@ class MatchState:
         self.survives_rules = False
         """Whether an error of the game's code, which may be somebody else's, is a fault that halts
         the match. False: the error ends the program, so that the author of the game sees it."""
+        self.rules_failed = False
+        """Whether such an error has halted the match."""
         self.halted_by = THE_COURT
         """In a halt, whose decision began it; `THE_COURT` for its own, for a fault, and else."""
         self.staging = Staging(self.arena, make_physics)

@@ -154,14 +154,14 @@ class Workers:
                 right, found = child.call(job.function, job.arguments, self._limit_s)
             except WorkerDied as error:
                 if not self._closing:
-                    with contextlib.suppress(OSError):  # else the next job tries again
+                    with contextlib.suppress(WorkerDied):  # else the next job tries again
                         child = self._replaced(child)
                 if left == 0 or self._closing or error.last_words is not None:
                     job.result.set_exception(error)
                     return child
                 left -= 1
                 continue
-            except Exception as error:  # no process can start, or the job can't be sent to one
+            except Exception as error:  # the job can't be sent to a process
                 job.result.set_exception(error)
                 return child
             if right:
@@ -174,7 +174,10 @@ class Workers:
         if child is not None:
             self._children.discard(child)
             child.end()
-        return self._child()
+        try:
+            return self._child()
+        except OSError as error:
+            raise WorkerDied(f"no process can be started: {error}") from None
 
     def _child(self) -> "_WorkerProcess":
         child = _WorkerProcess(self._background)

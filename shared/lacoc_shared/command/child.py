@@ -109,7 +109,9 @@ class Child:
     @property
     def complaint(self) -> str:
         """The error with which the process ended; "": it runs, or something killed it."""
-        return "" if self.was_killed or not self.ended else _text(self._complained).strip()
+        if self.was_killed or not self.ended:
+            return ""
+        return complaint(_text(self._complained), self._process.returncode)
 
     def close(self) -> None:
         """End the process that was started."""
@@ -175,10 +177,11 @@ def kept_child(
         while not ending.wait(_AGAIN_S) and not process.ended_for_good:
             if not process.ended:
                 continue
-            why, now_s = process.complaint, time.monotonic()
-            if tell is not None and (why != told or now_s - told_s > _TOLD_S):
-                told, told_s = why, now_s
-                tell(say("child.again", what=what, why=why or None))
+            with suppress(OSError, ValueError):  # nobody can be told, or read why
+                why, now_s = process.complaint, time.monotonic()
+                if tell is not None and (why != told or now_s - told_s > _TOLD_S):
+                    told, told_s = why, now_s
+                    tell(say("child.again", what=what, why=why or None))
             with suppress(OSError):  # no process can be started now: it is tried again
                 process = Child(words, folder, what)
 

@@ -1,5 +1,6 @@
 """Replaces a file in one step: whoever reads it meanwhile gets the whole old or new file."""
 
+import errno
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -57,5 +58,8 @@ def sync_folder(folder: Path) -> None:
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems can't do it
+            raise
     finally:
         os.close(descriptor)

@@ -145,7 +145,9 @@ class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         return Assigned(call=self.call, fixture=self.fixture, seats=self.seats)
 
 
-class Withdraw(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class Withdraw(
+    OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
+):
     """A request of the office to a court: close this match, so that it is void."""
 
     call: Call

@@ -11,6 +11,7 @@ import socket
 import ssl
 from collections.abc import Sequence
 from contextlib import suppress
+from functools import cache
 
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.public import is_loopback, is_number
@@ -245,6 +246,7 @@ def own_address() -> str:
     return _sender_to("192.0.2.1") or _by_name() or "127.0.0.1"
 
 
+@cache
 def _by_name() -> str:
     """Return the IP address of this machine's own name; "": it has none but loopback ones."""
     with suppress(OSError):

@@ -2,7 +2,7 @@
 
 import ssl
 import urllib.request
-from http.client import HTTPException
+from http.client import HTTPException, IncompleteRead, InvalidURL, RemoteDisconnected
 from typing import NamedTuple
 
 _WAIT_S = 10.0
@@ -44,5 +44,9 @@ def fetch(url: str, context: ssl.SSLContext | None, most_bytes: int, tag: str = 
             if answer.length:  # bytes that were announced and did not come
                 raise OSError("the answer was cut off")
             return FetchedFile(data, answer.headers.get("ETag", ""))
+    except InvalidURL as error:
+        raise ValueError(str(error)) from None
+    except (IncompleteRead, RemoteDisconnected):
+        raise OSError("the answer was cut off") from None
     except HTTPException as error:
         raise OSError(f"the answer is not HTTP ({type(error).__name__})") from None

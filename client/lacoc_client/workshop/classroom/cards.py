@@ -46,7 +46,7 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     """The first thing that the student must still do in this phase; None: nothing."""
     tries: int
     best_mm_s: float | None
-    """Highest forward speed of a trial in which B2 was pressed (the last key is measured) and the
+    """Highest forward speed of a trial whose last key, which is measured, was B2, and in which the
     robot stayed upright and off the floor [mm/s]; None: there was no such trial."""
     last_mm_s: float | None
     """Forward speed of the last trial [mm/s]; None: there was no trial."""

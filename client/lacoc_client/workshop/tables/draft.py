@@ -85,7 +85,7 @@ class _RowOfCells(NamedTuple):
     cells: list[Entry | None]
 
 
-class _Cells(NamedTuple):
+class _TableCells(NamedTuple):
     """The rows of a document's table, with whatever is in their cells."""
 
     kind: Kind
@@ -93,11 +93,11 @@ class _Cells(NamedTuple):
     rows: list[_RowOfCells]
 
 
-def _cells_in(entries: Mapping[str, Entry]) -> _Cells:
+def _cells_in(entries: Mapping[str, Entry]) -> _TableCells:
     shape = str(entries.get("shape", ""))
     found = SHAPE.fullmatch(shape)
     if found is None:
-        return _Cells("postures", 0, [])
+        return _TableCells("postures", 0, [])
     kind, legs = _KINDS[found[1]], int(found[2])
     places = sorted(
         (int(place[4]), float(place[5].replace("_", ".")), place[0])
@@ -109,7 +109,7 @@ def _cells_in(entries: Mapping[str, Entry]) -> _Cells:
         _RowOfCells(key, [entries.get(f"{name}/{joint}") for joint in joints])
         for key, _, name in places
     ]
-    return _Cells(kind, legs, rows)
+    return _TableCells(kind, legs, rows)
 
 
 def _text(cell: Entry | None) -> str:

@@ -193,6 +193,11 @@ class SharedTable:
         """Return a document for another shared table: the same table, without earlier edits."""
         return self._document.fresh()
 
+    def has_proposals(self, name: str) -> bool:
+        """Return whether the table has proposals of this student."""
+        entries = self._document.entries
+        return without_proposals(entries, name) != entries
+
     async def forget(self, name: str) -> None:
         """Remove the table's earlier edits, and the proposals of one student."""
         self.replace(document_of(without_proposals(self._document.entries, name)))

@@ -23,7 +23,7 @@ from lacoc_server.contest.league.fixture import named, standing
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.matches import ContestMatch
 from lacoc_server.contest.league.standings import DRAW
-from lacoc_server.contest.league.timetable.calling import needed
+from lacoc_server.contest.league.timetable.calling import in_vain, needed
 from lacoc_server.contest.league.timetable.foreseen import foreseen
 from lacoc_server.contest.league.timetable.schedule import due, waits_for_organiser
 from lacoc_server.contest.league.timetable.seeding import moved_apart
@@ -110,8 +110,11 @@ def _at_courts(was: Contest, then: Contest, ended: Container[str]) -> Iterator[P
     stay = {call.id for call in needed(then)}
     for call in was.running:
         if call.id not in stay and call.pairing not in ended:
-            match = named(was, call.pairing)
-            yield say("decide.taken-back", court=call.court, match=match, teams=call.teams)
+            court, match, teams = call.court, named(was, call.pairing), call.teams
+            if in_vain(then, call):
+                yield say("decide.taken-back", court=court, match=match, teams=teams)
+            else:
+                yield say("decide.taken-back-before", court=court, match=match, teams=teams)
 
 
 def _ranks(found: Changes, then: Contest) -> Iterator[Phrase]:

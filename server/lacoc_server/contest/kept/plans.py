@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, get_args
 
@@ -185,12 +186,16 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
 
     def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
         contest = compute(facts, FORMATS)
-        names = {plan.stage for plan in wanted}
-        for plan in contest.planned:
-            if plan.stage not in names:
-                yield new(Unplanned, stage=plan.stage)
         drawn = {view.name: view.plan for view in contest.stages}
-        known = {**{plan.stage: plan for plan in contest.planned}, **drawn}
+        planned = [plan.stage for plan in contest.planned]
+        names = [plan.stage for plan in wanted if plan.stage not in drawn]
+        # Stages are drawn in the order of their plans, so from the first other name on all are new.
+        same = sum(
+            1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(planned, names, strict=False))
+        )
+        for stage in planned[same:]:
+            yield new(Unplanned, stage=stage)
+        known = {**{plan.stage: plan for plan in contest.planned[:same]}, **drawn}
         for plan in wanted:
             if plan.stage in known and _content(known[plan.stage]) == _content(plan):
                 continue

@@ -158,6 +158,8 @@ class _PlayingBot(NamedTuple):
 
     files: str
     """Hash of the files that it plays with."""
+    call: str
+    """The newest call of its team with these files; "": its team is in no game."""
     process: "subprocess.Popen[bytes]"
 
 
@@ -193,21 +195,24 @@ class Bots:
         end its bot, but not in a game: it plays that to the end.
         """
         bots = {team.name: team for team in contest.teams if team.bot}
-        called = {name for call in contest.running for name in call.teams if name in bots}
-        for name, (files, process) in [*self._playing.items()]:
-            if name not in called and (name not in bots or files != bots[name].files):
+        called = {name: call.id for call in contest.running for name in call.teams if name in bots}
+        for name, there in [*self._playing.items()]:
+            call = called.get(name, "")
+            if name in bots and there.files == bots[name].files:
+                self._playing[name] = there._replace(call=call)
+            elif call != there.call or not call:
                 del self._playing[name]
-                process.terminate()
-                self._ending.append(process)
+                there.process.terminate()
+                self._ending.append(there.process)
         self._ending = [process for process in self._ending if process.poll() is None]
         now_s = time.monotonic()
-        for name in called:
-            team, there = bots[name], self._playing.get(name)
-            gone = there is None or there.process.poll() is not None
+        for name, call in called.items():
+            team, playing = bots[name], self._playing.get(name)
+            gone = playing is None or playing.process.poll() is not None
             if gone and now_s - self._begun_s.get(name, -math.inf) > _AGAIN_S:
                 self._begun_s[name] = now_s
                 process = self._start(name, team.bot, team.files)
-                self._playing[name] = _PlayingBot(team.files, process)
+                self._playing[name] = _PlayingBot(team.files, call, process)
 
     def _start(self, team: str, bot: str, files: str) -> "subprocess.Popen[bytes]":
         program = self._where.entries.path / files / "bot.py"

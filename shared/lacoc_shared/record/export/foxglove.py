@@ -118,7 +118,7 @@ def _messages(record: Record, started_ns: int) -> Iterator[tuple[int, str, Messa
 
 
 def _log(event: Event, time: Timestamp) -> Log:
-    level = Log.WARNING if event.kind == "fault" else Log.INFO
+    level = Log.WARNING if event.kind in ("fault", "rules") else Log.INFO
     return Log(timestamp=time, level=level, message=render(event.said, "en"), name=event.kind)
 
 

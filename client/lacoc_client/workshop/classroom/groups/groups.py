@@ -141,9 +141,11 @@ class Groups:
         """
         async with self._moving:
             self._own_allowances.pop(student.name, None)
+            own = None if (state := self.of(student)) is None else state.id
             has_left = await self._leave(student)
             for id_ in [*self.states]:
-                await self._tables[id_].forget(student.name)
+                if id_ == own or self._tables[id_].has_proposals(student.name):
+                    await self._tables[id_].forget(student.name)
             if has_left:
                 await self._tell()
 

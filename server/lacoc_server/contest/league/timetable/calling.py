@@ -11,6 +11,8 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Drawn,
+    Entered,
+    FilesChanged,
     OfDecision,
     Outcome,
     Played,
@@ -93,15 +95,30 @@ def needed(contest: Contest) -> list[Called]:
     return [call for call in contest.running if (call.pairing, call.game, call.teams) in following]
 
 
+def in_vain(contest: Contest, call: Called) -> bool:
+    """Return whether the result of a called game could not count any more.
+
+    It could if the match is open between the same teams, and no result of this game counts.
+    """
+    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    match = matches.get(call.pairing)
+    return (
+        match is None
+        or match.state != "open"
+        or {*match.teams} != {*call.teams}
+        or any(game.number == call.game for game in match.games)
+    )
+
+
 def taken_back(
     contest: Contest, seen: Mapping[str, SeenCourt], now_ms: int, since_ms: int = 0
 ) -> Iterator[AnyFact]:
     """Yield the facts that take games back from their courts.
 
-    Taken back are games that are no longer needed, for example because a team has left, also in
-    play; games that were moved to another court or a later time; and games of courts that were not
-    heard for `LOST_MS`. A game that has begun is not moved, and stays with a court that was killed,
-    which goes on with it.
+    Taken back are games that are no longer needed, for example because a team has left; games that
+    were moved to another court or a later time; and games of courts that were not heard for
+    `LOST_MS`. A game that has begun is taken back only if it is played in vain: it stays with a
+    court that was killed, which goes on with it.
 
     Args:
         contest: the contest.
@@ -114,9 +131,10 @@ def taken_back(
     for call in contest.running:
         court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
-        if call.id not in stays:
+        has_begun = court.call == call.id and court.begun
+        if in_vain(contest, call) if has_begun else call.id not in stays:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
-        elif court.call == call.id and court.begun:
+        elif has_begun:
             continue
         elif move is not None and (
             move.court not in ("", call.court) or move.not_before_ms > now_ms
@@ -137,9 +155,10 @@ def why_recalled(contest: Contest, facts: Sequence[AnyFact], call: str) -> Phras
     called = next((one for one in facts if isinstance(one, Called) and one.id == call), None)
     if called is None:
         return None
+    later = (fact for fact in facts if fact.number > called.number)
     game = called.pairing, called.game
-    backs = [f for f in facts if isinstance(f, Recalled) and (f.pairing, f.game) == game]
-    reason = backs[-1].reason if backs else ""
+    backs = (f for f in later if isinstance(f, Recalled) and (f.pairing, f.game) == game)
+    reason = getattr(next(backs, None), "reason", "")
     if reason == MOVED:
         return say("recalled.moved")
     if reason == COURT_LOST:
@@ -154,7 +173,9 @@ def why_recalled(contest: Contest, facts: Sequence[AnyFact], call: str) -> Phras
 
 
 def _is_about(fact: OfDecision, called: Called) -> bool:
-    """Return whether a decision is about a game's match, its stage, or one of its teams."""
+    """Return whether a decision about a game's match, its stage or one of its teams may end it."""
+    if isinstance(fact, Entered | FilesChanged):
+        return False
     if isinstance(fact, Drawn | Undrawn):
         return fact.stage == stage_of(called.pairing)
     pairing, team = getattr(fact, "pairing", ""), getattr(fact, "team", "")

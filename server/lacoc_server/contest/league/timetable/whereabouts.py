@@ -19,6 +19,7 @@ from lacoc_server.contest.league.facts import (
     AnyFact,
     Called,
     Disqualified,
+    NoShow,
     OfDecision,
     Planned,
     Played,
@@ -158,10 +159,13 @@ def _news(contest: Contest) -> dict[str, Phrase]:
     """
     matches = [match for view in contest.stages for match in view.matches]
     unused = {one.fact for one in contest.unused}
+    absent = {fact.pairing for fact in contest.decisions if isinstance(fact, NoShow)}
     news: dict[str, Phrase] = {}
     for fact in contest.decisions:
         told = [] if fact.id in unused else [(one, _concerned(fact, one)) for one in matches]
         for match, teams in told:
+            if isinstance(fact, Withdrawn | Disqualified) and match.pairing.id in absent:
+                continue  # it was won before
             for team in teams:
                 if fact.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
                     wins = say("team.wins") if team == match.winner else None
