@@ -44,7 +44,7 @@ class Ticker:
     def newest(
         self, contest: Contest, facts: Sequence[AnyFact], known: OfficeKnowledge
     ) -> Iterator[Phrase]:
-        """Yield lines for what has happened since the last call; moves and pauses have none.
+        """Yield lines for what has happened since the last call.
 
         Args:
             contest: the contest as it is now.
