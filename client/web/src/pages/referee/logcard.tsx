@@ -12,7 +12,16 @@ import * as drafts from "./drafts";
 const FILTERS = ["all", "decisions", "game", "trouble"] as const;
 type Filter = (typeof FILTERS)[number];
 
-const TROUBLE = new Set(["join", "leave", "silent", "heard", "fault", "rules", "strayed", "key-refused"]);
+const TROUBLE = new Set([
+  "join",
+  "leave",
+  "silent",
+  "heard",
+  "fault",
+  "rules",
+  "strayed",
+  "key-refused",
+]);
 const NOT_GAME = new Set([...TROUBLE, "decision", "ready"]);
 const MOST = 1000;
 
