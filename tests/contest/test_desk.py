@@ -167,6 +167,12 @@ def test_a_name_has_one_owner(room: Room, name: str) -> None:
     assert said(room.ask(Apply(secret=CODE, team=name, files=sample()))) == "desk.name-taken"
 
 
+def test_a_club_that_a_command_gave_is_shown(room: Room) -> None:
+    """The organiser's page has the club of a team also if the team did not type it."""
+    organiser.enter(room.file, "Ants", None, "", "", club="Kyoto")
+    assert [(row.team, row.club) for row in room.view.teams] == [("Ants", "Kyoto")]
+
+
 @pytest.mark.parametrize("teams", [0, 1, 2])
 def test_entries_do_not_close_by_themselves_without_teams(tmp_path: Path, teams: int) -> None:
     """An application after the time for it closes entries only if there are teams to play."""

@@ -1,6 +1,7 @@
 """Tests of a day that is steered from the office: who may, what it says, and that it is proven."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -16,6 +17,7 @@ from lacoc_server.contest.league.facts import (
     Called,
     Drawn,
     Entered,
+    FilesChanged,
     Played,
     Substituted,
     Undrawn,
@@ -25,6 +27,7 @@ from lacoc_server.contest.league.sheet import sheet
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_server.contest.verify.published import check_published
+from lacoc_shared.messages import Refusal
 from lacoc_shared.messages.desk import (
     PUBLISHED,
     Announce,
@@ -49,6 +52,7 @@ from lacoc_shared.messages.desk import (
     Undraw,
     Unshift,
 )
+from lacoc_shared.words import say
 
 _KNOCKOUT = """
 [stage.finals]
@@ -140,6 +144,26 @@ def test_a_match_that_was_decided_without_a_game_is_opened_again(room: Room, kin
     match = compute(room.facts, FORMATS).stages[0].matches[0]
     assert (match.state, match.next_game) == ("open", 1)
     assert wrongs(room.facts) == []
+
+
+def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
+    """The office holds a game back until a team of it has other files."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
+    refused = SimpleNamespace(take=lambda: Refusal(say("refused.no-office-token")))
+    office._asked[room.facts[-1].id] = cast(Any, refused)
+    office.step()
+    assert [*office.held] == [(match.pairing.id, 1)]
+    office.step()
+    assert office.held, "nothing has changed"
+    room.store.append(
+        league_facts.new(FilesChanged, team=match.next_seats[0], files="f", reason="a wrong leg")
+    )
+    office.step()
+    assert office.held == {}
 
 
 def test_a_team_whose_game_was_void_has_played(room: Room) -> None:

@@ -16,8 +16,7 @@ class OwnFiles:
     """The robot and gait files on this machine that a page sends, unless its user chose others.
 
     Args:
-        robot: an installed robot, a folder or a robot file;
-            None: the contest's robot.
+        robot: an installed robot, a folder or a robot file; None: the contest's.
         gaits: gait files; none: the newest of each kind in `folder`, else those beside the robot.
         folder: where gait files are looked for.
 

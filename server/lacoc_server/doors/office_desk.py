@@ -183,9 +183,8 @@ class OfficeDesk(Generic[T]):
         return None
 
     def _withdraw(self, request: Withdraw) -> Answer:
-        if request.why is not None and _wrong_phrase(
-            request.why
-        ):  # the match must end all the same
+        why = request.why
+        if why is not None and _wrong_phrase(why):  # the match must end all the same
             request = msgspec.structs.replace(request, why=None)
         return self._withdrawn(request) or partial(self._withdrawn, request)
 

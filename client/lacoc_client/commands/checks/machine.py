@@ -5,16 +5,13 @@ is written beside the records and removed.
 """
 
 import ctypes.util
-import http.client
 import os
 import platform
 import shutil
 import socket
-import ssl
 import statistics
 import sys
 import time
-import urllib.request
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from enum import StrEnum
@@ -24,6 +21,7 @@ from pathlib import Path
 import msgspec
 from packaging.requirements import Requirement
 
+from lacoc_client.play.link.fetch import fetch, trusting_all
 from lacoc_client.web.gateway.health import GatewayHealth
 from lacoc_shared import __version__
 from lacoc_shared.command import installing
@@ -199,13 +197,10 @@ def _reached(host: str, port: int) -> str:
 
 
 def _is_gateway(url: str) -> bool:
-    context = ssl.create_default_context()
-    context.check_hostname = False  # a certificate proves the public name, not this address
-    context.verify_mode = ssl.CERT_NONE
-    try:
-        with urllib.request.urlopen(f"{url}/healthz", timeout=_ASK_S, context=context) as reply:
-            msgspec.json.decode(reply.read(_MIB), type=GatewayHealth)
-    except (OSError, http.client.HTTPException, msgspec.MsgspecError):
+    try:  # a certificate proves the public name, not this address
+        found = fetch(f"{url}/healthz", trusting_all(), _MIB, wait_s=_ASK_S)
+        msgspec.json.decode(found.data, type=GatewayHealth)
+    except (OSError, ValueError):
         return False
     return True
 

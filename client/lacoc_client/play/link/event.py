@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from lacoc_client.play.link.fetch import fetch
+from lacoc_client.play.link.fetch import fetch, trusting_all
 from lacoc_shared.contest.link import Link
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
@@ -70,7 +70,7 @@ def find(text: str) -> FoundEvent:
         return FoundEvent(link, _read(link, _fetched(link, None)))
     # The pages prove who they are with a certificate of an authority that they name themselves. The
     # link says which authority that is.
-    claimed = _read(link, _fetched(link, _trusting_all())).authority
+    claimed = _read(link, _fetched(link, trusting_all())).authority
     if _fingerprint(link, claimed) != link.authority:
         raise UserError(say("link.other-authority", url=link.pages))
     event = _read(link, _fetched(link, ssl.create_default_context(cadata=claimed)))
@@ -82,13 +82,6 @@ def _fingerprint(link: Link, certificate: str) -> str:
         return fingerprint(certificate)
     except ValueError:
         raise UserError(say("link.other-authority", url=link.pages)) from None
-
-
-def _trusting_all() -> ssl.SSLContext:
-    context = ssl.create_default_context()
-    context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE
-    return context
 
 
 def _fetched(link: Link, context: ssl.SSLContext | None) -> bytes:

@@ -20,7 +20,13 @@ class FetchedFile(NamedTuple):
     """Its ETag, which names this version of the file; "": the pages sent none."""
 
 
-def fetch(url: str, context: ssl.SSLContext | None, most_bytes: int, tag: str = "") -> FetchedFile:
+def fetch(
+    url: str,
+    context: ssl.SSLContext | None,
+    most_bytes: int,
+    tag: str = "",
+    wait_s: float = _WAIT_S,
+) -> FetchedFile:
     """Fetch a file.
 
     Args:
@@ -28,6 +34,7 @@ def fetch(url: str, context: ssl.SSLContext | None, most_bytes: int, tag: str = 
         context: how the pages must prove who they are; None: as the system has it.
         most_bytes: the longest file that is taken.
         tag: the ETag of the version that the caller has; the pages then send only another one.
+        wait_s: longest silence of the pages [s].
 
     Raises:
         urllib.error.HTTPError: if the pages refuse, or (304) have no other version.
@@ -37,7 +44,7 @@ def fetch(url: str, context: ssl.SSLContext | None, most_bytes: int, tag: str = 
     """
     asked = urllib.request.Request(url, headers={"If-None-Match": tag} if tag else {})
     try:
-        with urllib.request.urlopen(asked, timeout=_WAIT_S, context=context) as answer:
+        with urllib.request.urlopen(asked, timeout=wait_s, context=context) as answer:
             data = answer.read(most_bytes + 1)
             if len(data) > most_bytes:
                 raise TooLong(f"more than {most_bytes} bytes")
@@ -50,3 +57,11 @@ def fetch(url: str, context: ssl.SSLContext | None, most_bytes: int, tag: str = 
         raise OSError("the answer was cut off") from None
     except HTTPException as error:
         raise OSError(f"the answer is not HTTP ({type(error).__name__})") from None
+
+
+def trusting_all() -> ssl.SSLContext:
+    """Return the context for pages that need not prove who they are."""
+    context = ssl.create_default_context()
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE
+    return context

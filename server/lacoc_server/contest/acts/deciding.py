@@ -67,7 +67,7 @@ def effect(facts: Sequence[AnyFact], more: Iterable[AnyFact]) -> tuple[Phrase, .
     then = compute((*facts, *placed), FORMATS)
     was = compute(facts, FORMATS)
     found = changes(was, then)
-    here = sum(not team.gone for team in then.teams)
+    here = then.here
     lines = [
         *(say("decide.leaves", team=team, left=here) for team in found.leaving),
         *_matches(found, was, then),
@@ -258,7 +258,7 @@ def match_of(contest: Contest, pairing: str) -> ContestMatch:
     Raises:
         UserError: if the contest has no match of this pairing.
     """
-    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
+    matches = contest.matches
     if pairing not in matches:
         known = [*matches][:20]
         raise UserError(say("decide.no-match", pairing=pairing, known=known or None))

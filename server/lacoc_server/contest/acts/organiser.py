@@ -16,10 +16,9 @@ from lacoc_server.contest.kept.plans import game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import sheet as sheets
-from lacoc_server.contest.league.contest import Contest, compute
+from lacoc_server.contest.league.contest import TEAMS_LEAST, Contest, compute
 from lacoc_server.contest.league.draws import by_lot
 from lacoc_server.contest.league.facts import (
-    TEAMS_LEAST,
     AnyFact,
     Closed,
     Disqualified,
@@ -343,7 +342,7 @@ def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
     Up to now there is one: a Swiss stage with more rounds than a team has opponents, so teams meet
     again.
     """
-    here = sum(not team.gone for team in contest.teams)
+    here = contest.here
     found: list[Phrase] = []
     for plan in where.plans:
         teams = min(plan.teams, here) if plan.teams else here
@@ -369,9 +368,8 @@ def check_teams(where: ContestFolder, contest: Contest) -> None:
     Raises:
         UserError: if there are fewer than two, and nothing is drawn yet.
     """
-    here = sum(not team.gone for team in contest.teams)
-    if here < 2 and not contest.stages:
-        raise UserError(say("contest.few-teams", teams=here, file=str(where.file)))
+    if contest.here < TEAMS_LEAST and not contest.stages:
+        raise UserError(say("contest.few-teams", teams=contest.here, file=str(where.file)))
 
 
 def close_in_time(where: ContestFolder, store: FactStore) -> None:
@@ -385,8 +383,7 @@ def close_in_time(where: ContestFolder, store: FactStore) -> None:
 
     def closing(facts: Sequence[AnyFact]) -> list[AnyFact]:
         contest = compute(facts, FORMATS)
-        here = sum(not team.gone for team in contest.teams)
-        return [] if contest.closed or here < TEAMS_LEAST else [new(Closed)]
+        return [] if contest.closed or contest.here < TEAMS_LEAST else [new(Closed)]
 
     end = where.contest.entries_close
     if end is not None and end.astimezone(UTC) <= datetime.now(UTC):

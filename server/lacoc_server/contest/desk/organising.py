@@ -99,7 +99,7 @@ def close(book: Book) -> Said:
     if book.contest.closed:
         raise UserError(say("desk.closed-already"))
     book.store.append(new(Closed))
-    here = sum(not team.gone for team in book.contest.teams)
+    here = book.contest.here
     return Said(said=(say("desk.closed", teams=here), *organiser.doubts(book.where, book.contest)))
 
 

@@ -2,7 +2,6 @@
 
 import ast
 import hashlib
-import os
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -23,7 +22,7 @@ from lacoc_robots.stand_test import try_standing
 from lacoc_server.contest.kept.team_picture import small_picture
 from lacoc_server.match.entry import Entry, weigh_in
 from lacoc_shared.command import regular
-from lacoc_shared.command.replacing import sync_folder
+from lacoc_shared.command.replacing import sync_folder, write
 from lacoc_shared.contest.file import ENTRY_HASH, PICTURE
 from lacoc_shared.gait.tables import Level
 from lacoc_shared.inputs import JoinSeat
@@ -284,11 +283,7 @@ class EntryFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             part = Path(tempfile.mkdtemp(dir=self.path, prefix="part-"))
             for name, data in _files(entry).items():
-                with (part / name).open("xb") as file:
-                    file.write(data)
-                    file.flush()
-                    os.fsync(file.fileno())  # the fact that names the entry will be on the disk too
-            sync_folder(part)
+                write(part / name, data, lasting=True)  # as the fact that names the entry
             part.rename(place)  # so that a folder with this name is always whole
             sync_folder(self.path)
         except OSError as error:

@@ -40,6 +40,8 @@ from lacoc_server.contest.league.standings import Table
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
+TEAMS_LEAST = 2
+"""With fewer teams nothing is drawn, so entries do not close by themselves."""
 _MINUTE_MS = 60_000
 
 
@@ -153,6 +155,16 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     unused: tuple[Unused, ...]
 
     @property
+    def here(self) -> int:
+        """Number of teams that have not left."""
+        return len(_here(self))
+
+    @property
+    def matches(self) -> dict[str, ContestMatch]:
+        """The matches of all drawn stages, by the ids of their pairings."""
+        return {match.pairing.id: match for view in self.stages for match in view.matches}
+
+    @property
     def over(self) -> bool:
         """Whether nothing is left to play or to draw."""
         return bool(self.stages) and not self.planned and all(view.over for view in self.stages)
@@ -184,7 +196,7 @@ class Changes(msgspec.Struct, frozen=True, kw_only=True):
 
 def changes(before: Contest, after: Contest) -> Changes:
     """Compare two contests, such as before and after a decision that is not yet made."""
-    was, now = _by_pairing(before), _by_pairing(after)
+    was, now = before.matches, after.matches
     old, new = _ranks(before), _ranks(after)
     return Changes(
         matches=tuple(
@@ -203,10 +215,6 @@ def changes(before: Contest, after: Contest) -> Changes:
 
 def _here(contest: Contest) -> set[str]:
     return {team.name for team in contest.teams if not team.gone}
-
-
-def _by_pairing(contest: Contest) -> dict[str, ContestMatch]:
-    return {match.pairing.id: match for view in contest.stages for match in view.matches}
 
 
 def _outcome(match: ContestMatch | None) -> tuple[object, ...]:

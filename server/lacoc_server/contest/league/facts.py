@@ -16,9 +16,6 @@ from lacoc_shared.words import Phrase, say
 VERSION = 1
 """Version of the format of facts."""
 
-TEAMS_LEAST = 2
-"""With fewer teams nothing is drawn, so entries do not close by themselves."""
-
 Name = Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
 Draw = Literal["at-once", "organiser"]
 """When a stage is drawn: "at-once" as soon as its teams are known, "organiser" only after that,

@@ -11,8 +11,8 @@ from functools import cache
 from lacoc_server.contest.headless.play import outcome
 from lacoc_server.contest.kept.entries import EntryFolder
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.contest import Contest, Newest
-from lacoc_server.contest.league.facts import TEAMS_LEAST, AnyFact, Called, Recalled, new
+from lacoc_server.contest.league.contest import TEAMS_LEAST, Contest, Newest
+from lacoc_server.contest.league.facts import AnyFact, Called, Recalled, new
 from lacoc_server.contest.league.fixture import fixture
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.calling import (
@@ -169,7 +169,7 @@ class Office:
         if self.contest.closed:
             return True
         over = self._draw_from_ms is not None and now_ms >= self._draw_from_ms
-        return over and sum(not team.gone for team in self.contest.teams) >= TEAMS_LEAST
+        return over and self.contest.here >= TEAMS_LEAST
 
     def _look(self, name: str, link: CourtLink | None, now_ms: int) -> SeenCourt:
         if link is None:
@@ -229,9 +229,8 @@ class Office:
     def _files(self, pairing: str) -> tuple[str, ...]:
         """Return the hashes of the present files of a match's teams."""
         files = {team.name: team.files for team in self.contest.teams}
-        matches = (match for view in self.contest.stages for match in view.matches)
-        teams = next((one.teams for one in matches if one.pairing.id == pairing), ())
-        return tuple(files.get(team or "", "") for team in teams)
+        match = self.contest.matches.get(pairing)
+        return tuple(files.get(team or "", "") for team in (match.teams if match else ()))
 
     def _assign(self, link: CourtLink, call: Called) -> Asked[Done]:
         view = next(

@@ -100,8 +100,7 @@ def in_vain(contest: Contest, call: Called) -> bool:
 
     It could if the match is open between the same teams, and no result of this game counts.
     """
-    matches = {match.pairing.id: match for view in contest.stages for match in view.matches}
-    match = matches.get(call.pairing)
+    match = contest.matches.get(call.pairing)
     return (
         match is None
         or match.state != "open"

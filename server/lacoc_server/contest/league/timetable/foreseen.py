@@ -77,7 +77,7 @@ def _is_to_come(match: ContestMatch) -> bool:
 
 def _all_stages(contest: Contest, formats: Mapping[str, Format]) -> Iterator[StageView]:
     """Yield the drawn stages with all their rounds, then the planned stages as they will be."""
-    teams = sum(not team.gone for team in contest.teams)
+    teams = contest.here
     places: dict[str, int] = {}
     for view in contest.stages:
         here = len(view.stage.entries)

@@ -54,8 +54,7 @@ def _moved(contest: Contest, fact: Moved) -> Phrase:
     coming = {one.pairing.id: one for one in foreseen(contest, FORMATS)}
     one = coming.get(fact.pairing)
     what = one.fixture if one is not None else named(contest, fact.pairing)
-    drawn = {match.pairing.id: match for view in contest.stages for match in view.matches}
-    match = one.match if one is not None else drawn.get(fact.pairing)
+    match = one.match if one is not None else contest.matches.get(fact.pairing)
     left, right = match.seated if match is not None else (None, None)
     teams = (left, right) if left and right else (None, None)
     court = fact.court or None

@@ -92,7 +92,7 @@ def _said(contest: Contest, fact: AnyFact) -> Phrase | None:
     """Put a fact into words for the organiser; None: it is a decision, or needs no line."""
     match fact:
         case Closed():
-            here = sum(not team.gone for team in contest.teams)
+            here = contest.here
             return say("news.closed", teams=here)
         case Drawn():
             return say("news.drawn", stage=title(contest, fact.stage), teams=len(fact.entries))

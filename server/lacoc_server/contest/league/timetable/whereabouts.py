@@ -7,6 +7,7 @@ is right only on average.
 
 from bisect import bisect_left, insort
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from statistics import median
 from string import ascii_lowercase
 from typing import NamedTuple
@@ -157,20 +158,18 @@ def _news(contest: Contest) -> dict[str, Phrase]:
 
     A decision that has no effect is left out, for example about a team that was replaced since.
     """
-    matches = [match for view in contest.stages for match in view.matches]
     unused = {one.fact for one in contest.unused}
     absent = {fact.pairing for fact in contest.decisions if isinstance(fact, NoShow)}
     news: dict[str, Phrase] = {}
-    for fact in contest.decisions:
-        told = [] if fact.id in unused else [(one, _concerned(fact, one)) for one in matches]
-        for match, teams in told:
-            if isinstance(fact, Withdrawn | Disqualified) and match.pairing.id in absent:
-                continue  # it was won before
-            for team in teams:
-                if fact.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
-                    wins = say("team.wins") if team == match.winner else None
-                    what = _about(contest, fact, match)
-                    news[team] = say("team.news", what=what, reason=fact.reason or None, wins=wins)
+    for fact, (pairing, match) in product(contest.decisions, contest.matches.items()):
+        has_left = isinstance(fact, Withdrawn | Disqualified)
+        if fact.id in unused or (has_left and pairing in absent):  # the match was won before
+            continue
+        for team in _concerned(fact, match):
+            if fact.at_ms >= contest.ended_ms.get(team, ("", 0))[1]:
+                wins = say("team.wins") if team == match.winner else None
+                what = _about(contest, fact, match)
+                news[team] = say("team.news", what=what, reason=fact.reason or None, wins=wins)
     return news
 
 
