@@ -16,6 +16,7 @@ from starlette.routing import WebSocketRoute
 from starlette.websockets import WebSocket
 from waiting import LIMIT_S
 
+from lacoc_client.commands.checks import pages as looks
 from lacoc_client.commands.checks.machine import Finding, Status, web_port
 from lacoc_client.commands.checks.pages import _reached, pages, plain_courts
 from lacoc_client.web.gateway import server
@@ -56,6 +57,7 @@ def authority(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> trustme.CA:
     made = trustme.CA()
     made.cert_pem.write_to_path(str(tmp_path / "authority.pem"))
     monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "authority.pem"))
+    monkeypatch.setattr(looks, "_WAIT_S", LIMIT_S)  # a busy machine may answer late
     return made
 
 
