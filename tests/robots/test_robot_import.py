@@ -130,6 +130,8 @@ def test_each_way_to_write_a_number_is_read(
         ("AngMin=1.2", "AngMin", "header.missing", "AngMin"),
         ("dReal Robot_weight", "dReal Robot_mass", "header.missing", "Robot_weight"),
         ("0.125,", "0.125, 0.1,", "header.entries", "Robot_weight"),
+        ("_NUM 18", "_NUM 99999999999", "header.joints", "RJOINT_NUM"),
+        ("_NUM 18", "_NUM 0", "header.joints", "RJOINT_NUM"),
     ],
 )
 def test_what_is_not_read_is_told(old: str, new: str, note: str, name: str) -> None:

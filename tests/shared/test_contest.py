@@ -55,6 +55,12 @@ def test_a_good_file_loads_with_paths_from_its_own_folder(file: Path) -> None:
     assert contest.courts["second"].connect == "tcp/court.example.org:7448"
 
 
+def test_records_may_be_in_the_home_folder(file: Path) -> None:
+    """A ~ in a path is the user's own folder, here as everywhere."""
+    file.write_text(GOOD.replace('"records"', '"~/records"'))
+    assert contests.load(file).recordings == Path.home() / "records"
+
+
 def test_empty_tables_are_courts_with_ports_of_their_own(file: Path) -> None:
     """A court needs no entry: it plays Othello, and listens on this machine alone."""
     file.write_text("[court.red]\n[court.blue]\n")

@@ -29,6 +29,7 @@ _LIFT_DEG = 20.0
 _ANG_MIN_TICKS_S = 100
 """Factor from AngMin in the C file (degrees in 10 ms) to degrees a second (rules 1)."""
 _RANGE_DEG = "[-150, 150]"
+_JOINTS, _MOST_JOINTS = 18, 300
 
 
 class CFile(NamedTuple):
@@ -92,9 +93,7 @@ class _HeaderRobot:
         self._radius, self._link, self._ang_min = (
             self._number(name) for name in DEFAULTS if name not in _SIDES
         )
-        count = values.get("RJOINT_NUM", 18)
-        joints = count if isinstance(count, int) else 18
-        self._legs = max(1, joints // JOINTS_PER_LEG)
+        self._legs = self._joints() // JOINTS_PER_LEG
         start = self._list("Start_Pos", 3)
         self._start = start or (0.0, 0.0, self._link + self._radius)
 
@@ -141,6 +140,15 @@ class _HeaderRobot:
                 yield f"masses_kg = [{', '.join(map(_shown, links_kg[leg]))}]"
             if leg in (0, self._legs - 1):
                 yield "accent = true"
+
+    def _joints(self) -> int:
+        name = "RJOINT_NUM"
+        count = self._values.get(name, _JOINTS)
+        if isinstance(count, int) and JOINTS_PER_LEG <= count <= _MOST_JOINTS:
+            return count
+        where, low = self._places.get(name, ""), JOINTS_PER_LEG
+        self.wrong[name] = say("header.joints", name=name, place=where, low=low, high=_MOST_JOINTS)
+        return _JOINTS
 
     def _side(self, name: str) -> float:
         """Return the length of a side of the body [m]; the places of legs are shares of it."""

@@ -285,7 +285,7 @@ def _contest(table: dict[str, Any], path: Path) -> ContestFile:
     check_ports(courts, standby)
     return ContestFile(
         name=general.name,
-        recordings=folder / general.recordings,
+        recordings=folder / Path(general.recordings).expanduser(),
         robot=robot,
         limits=limits,
         health=health,
