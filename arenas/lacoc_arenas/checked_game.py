@@ -88,9 +88,6 @@ def checked(source: ArenaCode, game: Any) -> AnyGame:
     _check_values(source, game)
     held = CheckedGame(source, game)
     state = held.start()
-    held.board(state)
-    held.winner(state, held.score(state))
-    held.over(state)
     for seat in range(len(game.starts)):
         held.gains(state, seat)
     return held
@@ -142,7 +139,7 @@ class CheckedGame:
             case (after, tuple() as events):
                 for event in events:
                     self._check_event(event)
-                return self._state("step", after), events
+                return state if after is state else self._state("step", after), events
         raise self._wrong("step", found, say("game-expects.step"))
 
     def board(self, state: Any) -> tuple[int, ...]:
@@ -202,6 +199,10 @@ class CheckedGame:
     def _state(self, rule: str, found: Any) -> Any:
         if not isinstance(found, self.state_type):
             raise self._wrong(rule, found, say("game-expects.state", type=self.state_type.__name__))
+        # A state that the other rules can't judge is found here, before the match has it.
+        self.board(found)
+        self.winner(found, self.score(found))
+        self.over(found)
         return found
 
     def _check_event(self, event: Any) -> None:

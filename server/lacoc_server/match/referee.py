@@ -19,6 +19,7 @@ from lacoc_server.match.state import MatchState
 from lacoc_shared import decisions as d
 from lacoc_shared.inputs import THE_COURT, Decide
 from lacoc_shared.messages import MARKER_STATES, DecisionReply, Refusal
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S, Phase
 from lacoc_shared.words import Phrase, say
 
@@ -207,8 +208,8 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
         match.history.set(index, MARKER_STATES.index(decision.state), match.next_number)
     except NoSuchState as error:
         raise Illegal(error.why) from None
-    except ValueError as error:  # third-party games raise a plain text
-        raise Illegal(say("plain.text", text=str(error))) from None
+    except UserError as error:  # another author's code is wrong
+        raise Illegal(error.phrase) from None
     score = _score(match, match.scores())
     for seat in match.seats:
         if seat.id == decision.state:

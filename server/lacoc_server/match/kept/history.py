@@ -147,8 +147,8 @@ class History:
             number: event number of the decision.
 
         Raises:
-            NoSuchState: if the marker has no such state; another author's game may raise any
-                ValueError.
+            NoSuchState: if the marker has no such state.
+            UserError: if another author's code is wrong.
         """
         self.state = self._game.set(self.state, marker, value)
         if self._keeps:
