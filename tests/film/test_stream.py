@@ -21,13 +21,14 @@ from show import decide, playing
 from venue import Venue
 from waiting import LIMIT_S, until
 
-from lacoc_client.film.live import sender
+from lacoc_client.film.live import sender, sending
 from lacoc_client.film.live.mixer import Mixer
 from lacoc_client.film.live.pace import PicturePace
-from lacoc_client.film.live.sender import SOUND_HZ, LivePicture, Sender
+from lacoc_client.film.live.sender import LivePicture, Sender
+from lacoc_client.film.live.sending import SOUND_HZ, NotSent, Part, SendingProcess
 from lacoc_client.film.live.target import Target, target
-from lacoc_client.film.movie import Movie
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.words import Phrase
 
 SIZE, FPS = (320, 180), 10
 SCORE = np.s_[0:24, 110:145]
@@ -117,11 +118,13 @@ def test_what_a_server_does_is_told_once(picture: bytes, monkeypatch: pytest.Mon
     """A server that refuses is told once, its return when it takes the stream, and a new loss."""
     tries = []
 
-    def counted(*given: Any) -> Movie:
-        tries.append(given)
-        return Movie(*given)
+    class Counted(SendingProcess):
+        def send(self, part: Part) -> NotSent | None:
+            if refused := super().send(part):
+                tries.append(refused)
+            return refused
 
-    monkeypatch.setattr(sender, "Movie", counted)
+    monkeypatch.setattr(sender, "SendingProcess", Counted)
     monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
     with socket.socket() as server:
         server.bind(("127.0.0.1", 0))
@@ -171,9 +174,40 @@ def test_a_protocol_that_ffmpeg_lacks_ends_the_stream(picture: bytes) -> None:
     """No server can come back by it."""
     streamer = Streamer(Target("lacoc://127.0.0.1/key", "mpegts", is_remote=True), picture)
     streamer.until(lambda: streamer.sender.failed)
-    assert isinstance(streamer.sender.failed, av.ProtocolNotFoundError)
+    assert streamer.sender.failed == "Protocol not found"
     assert streamer.told == []
     streamer.sender.end()
+
+
+@pytest.mark.parametrize("protocol", ["rtmp", "tcp"])
+def test_a_server_that_takes_nothing_is_away(
+    picture: bytes, monkeypatch: pytest.MonkeyPatch, protocol: str
+) -> None:
+    """A server that accepts and then says nothing, or reads nothing, stops no other thread."""
+    monkeypatch.setattr(sending, "_SILENT_S", 1.0)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
+        address = f"{protocol}://127.0.0.1:{server.getsockname()[1]}/live/key"
+        streamer = Streamer(target(address), picture)
+        streamer.until(lambda: streamer.told)
+        assert streamer.told == ["stream.away"]
+        streamer.sender.end()
+
+
+def test_a_sending_process_that_is_killed_is_started_again(picture: bytes, tmp_path: Path) -> None:
+    """What it wrote before stays; the next part begins a new stream."""
+    process = SendingProcess(target(f"{tmp_path}/out.mkv"), SIZE, FPS)
+    part = Part(0, picture, bytes(4 * SOUND_HZ // FPS))
+    assert process.send(part) is None
+    assert process._running is not None
+    process._running[0].kill()
+    refused = process.send(part)
+    assert refused is not None
+    assert isinstance(refused.why, Phrase)
+    assert process.send(part) is None
+    process.end()
+    with av.open(f"{tmp_path}/out.mkv") as container:
+        assert len([*container.decode(video=0)]) == 1
 
 
 @pytest.fixture

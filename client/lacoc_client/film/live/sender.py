@@ -1,4 +1,4 @@
-"""Encodes the pictures of a stream and sends them, on a thread of its own."""
+"""Hands the pictures and sounds of a stream to the process that sends them, on a thread."""
 
 import threading
 import time
@@ -6,16 +6,11 @@ from collections.abc import Callable
 from queue import Empty, Full, Queue
 from typing import NamedTuple
 
-import av
-
 from lacoc_client.film.live.mixer import Mixer
+from lacoc_client.film.live.sending import SOUND_HZ, Part, SendingProcess
 from lacoc_client.film.live.target import Target
-from lacoc_client.film.movie import Movie
 from lacoc_shared.words import Phrase, say
 
-SOUND_HZ = 48_000
-"""Samples a second of the sound."""
-_OPTIONS = {"preset": "veryfast", "crf": "23", "maxrate": "4M", "bufsize": "8M"}
 _WAITING_MOST = 4
 """How many pictures may wait; further pictures are left out, so that a stream never falls
 behind."""
@@ -32,7 +27,7 @@ class LivePicture(NamedTuple):
 
 
 class Sender:
-    """Encodes the pictures and sounds of a live stream, and sends them.
+    """Sends the pictures and sounds of a live stream.
 
     If the server is gone, tries again until it is back.
 
@@ -55,7 +50,7 @@ class Sender:
         """Number of pictures that were sent."""
         self.left_out = 0
         """Number of pictures left out, because the encoder or the server was too slow, or gone."""
-        self.failed: av.FFmpegError | None = None
+        self.failed: Phrase | str | None = None
         """Why the file can't be written, or why FFmpeg can't reach such a server; the stream has
         ended then. None: there was no such error."""
         self._is_away = False
@@ -84,16 +79,36 @@ class Sender:
         self._thread.join(10 * _AGAIN_S)
 
     def _run(self) -> None:
-        while not self._ending.is_set():
-            try:
-                self._send()
-            except av.FFmpegError as error:
-                if not self._target.is_remote or isinstance(error, av.ProtocolNotFoundError):
-                    self.failed = error
-                    return
+        process = SendingProcess(self._target, self._size, self._fps)
+        try:
+            self._send_to(process)
+        finally:
+            process.end()
+
+    def _send_to(self, process: SendingProcess) -> None:
+        """Send pictures and sounds until the stream is told to end, or can't go on."""
+        is_new = True
+        while not self._ending.is_set() or not self._waiting.empty():
+            picture = self._next()
+            if picture is None:
+                continue
+            if is_new:
+                self._sound_until(picture.number)
+            sound = self._sound_until(picture.number + 1)
+            refused = process.send(Part(picture.number, picture.data, sound))
+            is_new = refused is not None
+            if refused is None:
+                self.sent += 1
+                if self._is_away:
+                    self._tell(say("stream.back", target=self._target.shown))
+                self._is_away = False
+            elif refused.is_final or not self._target.is_remote:
+                self.failed = refused.why
+                return
+            else:
+                self.left_out += 1
                 if not self._is_away:
-                    why = error.strerror or str(error)
-                    self._tell(say("stream.away", target=self._target.shown, why=why))
+                    self._tell(say("stream.away", target=self._target.shown, why=refused.why))
                 self._is_away = True
                 self._pass(_AGAIN_S)
 
@@ -114,33 +129,6 @@ class Sender:
             return self._waiting.get(timeout=_LOOK_S)
         except Empty:
             return None
-
-    def _send(self) -> None:
-        """Open the stream's target, and send it pictures and sounds until the stream ends.
-
-        Raises:
-            FFmpegError: if the target can't be written.
-        """
-        first = None
-        with av.open(
-            self._target.address, "w", format=self._target.form, options=self._target.options
-        ) as container:
-            film = Movie(container, self._size, self._fps, SOUND_HZ, _OPTIONS)
-            while not self._ending.is_set() or not self._waiting.empty():
-                picture = self._next()
-                if picture is None:
-                    continue
-                if first is None:
-                    first = picture.number
-                    self._sound_until(first)
-                    container.start_encoding()  # the server is asked here
-                    if self._is_away:
-                        self._tell(say("stream.back", target=self._target.shown))
-                    self._is_away = False
-                film.hear(self._sound_until(picture.number + 1))
-                film.add(picture.data, picture.number - first)
-                self.sent += 1
-            film.end()
 
     def _sound_until(self, number: int) -> bytes:
         with self._mixing:

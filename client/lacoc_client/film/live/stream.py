@@ -7,12 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from urllib.parse import urlencode
 
-import av
 from playwright.sync_api import Error, Page
 
 from lacoc_client.film.camera_page import window
 from lacoc_client.film.live.pace import PicturePace
-from lacoc_client.film.live.sender import SOUND_HZ, LivePicture, Sender
+from lacoc_client.film.live.sender import LivePicture, Sender
+from lacoc_client.film.live.sending import SOUND_HZ
 from lacoc_client.film.live.target import Target
 from lacoc_client.film.look import Look
 from lacoc_client.film.shots import JPEG, Shots
@@ -64,7 +64,7 @@ class _Streaming:
         self, source: Streamed, target: Target, look: Look, fps: int, tell: Callable[[Phrase], None]
     ) -> None:
         self._address = source.address(look)
-        self._look, self._tell = look, tell
+        self._look, self._target, self._tell = look, target, tell
         self._pace = PicturePace(fps, time.monotonic())
         self._began_s = time.time()
         self.sender = Sender(target, (look.width, look.height), fps, tell)
@@ -77,9 +77,8 @@ class _Streaming:
         """Draw and send the stream until it is told to stop.
 
         Raises:
-            UserError: if there is no browser.
-            FFmpegError: if the target is a file that can't be written, or FFmpeg can't reach such
-                a server.
+            UserError: if there is no browser, the target is a file that can't be written, or
+                FFmpeg can't reach such a server.
         """
         while not stopping():
             with window(self._look) as (page, paced):
@@ -136,7 +135,8 @@ class _Streaming:
         while self._held and self._pace.time_s(self._held[0].number) < now_s - _HELD_S:
             self.sender.show(self._held.popleft())
         if self.sender.failed is not None:
-            raise self.sender.failed
+            why = self.sender.failed
+            raise UserError(say("command.cannot-write", path=self._target.shown, why=why))
 
     def _report(self, report: Callable[[Report], None]) -> None:
         now_s = time.monotonic()
@@ -182,8 +182,5 @@ def stream(
     running = _Streaming(source, target, look, fps, tell)
     try:
         running.run(stopping, report)
-    except av.FFmpegError as error:
-        why = error.strerror or str(error)
-        raise UserError(say("command.cannot-write", path=target.shown, why=why)) from None
     finally:
         running.sender.end()
