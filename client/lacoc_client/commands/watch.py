@@ -91,7 +91,10 @@ class _End:
         self._ended_s: float | None = None
 
     def __call__(self) -> bool:
-        """Return whether to end: if somebody asked for it, or the match's last event has come."""
+        """Return whether to end: if somebody asked for it; without --forever also after a match.
+
+        A match has ended when its last event has come, or is missing 2 s after a frame of the end.
+        """
         if self._stopping():
             return True
         frame = self._view.frame

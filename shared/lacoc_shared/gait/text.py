@@ -145,10 +145,10 @@ def line_cells(line: str) -> list[str]:
 
 
 def _is_csv(lines: Iterable[str]) -> bool:
-    """Return whether lines are CSV: commas or semicolons separate their cells, and not tabs.
+    """Return whether lines are CSV, in which commas or semicolons separate the cells.
 
-    Each cell of a gait file may have one decimal comma. So only a line with more commas and
-    semicolons than cells is CSV.
+    None of them has a tab then, and at least one has more commas and semicolons than it would have
+    cells if spaces separated them: such a cell can have one decimal comma.
     """
     lines = list(lines)
     return not any("\t" in line for line in lines) and any(

@@ -172,7 +172,7 @@ class TriedKey(msgspec.Struct, frozen=True, array_like=True, forbid_unknown_fiel
 
 
 class TryOutRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A player's question before the match: how would the robot walk, alone, with some keys?
+    """A player's question in the lobby: how would the robot walk, alone, with some keys?
 
     It is sealed like a `SeatRequest`. If it overtakes a `SeatRequest` on the way, the court still
     accepts the `SeatRequest`.

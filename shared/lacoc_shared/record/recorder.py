@@ -42,7 +42,7 @@ class Recorder(ABC):
         self._write(_TOUCH, beat, codec.encode(touch))
 
     def snapshot(self, beat: int, data: bytes) -> None:
-        """Write the state of physics after a beat, as bytes that only the court can read."""
+        """Write the state of physics after a beat, as bytes for the same model in MuJoCo."""
         self._write(_SNAPSHOT, beat, data)
 
     def sheet(self, beat: int, sheet: Sheet) -> None:

@@ -169,9 +169,9 @@ class AwayCourt:
             self._tell(say("away.goes-on-here", court=self.name, at=self._entry.elsewhere))
 
     def _connect(self, office: Office) -> None:
-        """Try again and again to connect to the court's own machine.
+        """Begin to connect to the court's own machine if a try is due; use what a try has opened.
 
-        Use the connection once it is there.
+        This never waits; `step` calls it again and again.
         """
         link = self._connects.take()
         if link is None:

@@ -365,7 +365,7 @@ class _Fetched(Generic[T]):
         self._question, self.value, self.hash = None, None, b""
 
     def take(self) -> bool:
-        """Read an answer if one has come; return whether it has."""
+        """Read an answer if one has come; return whether there is a new one that can be read."""
         try:
             answer = None if self._question is None else self._question.take()
             if answer is None:
