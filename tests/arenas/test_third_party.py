@@ -290,3 +290,19 @@ def test_a_court_goes_on_when_a_game_breaks(
     assert [bool(re.search(says, render(fault.said))) for fault in faults] == [True]
     *_, verdict = replay.verify(record, ground.folder, processes=1)
     assert verdict.kind is replay.VerdictKind.SAME
+
+
+def test_a_proof_with_broken_rules_says_where_they_break(race: Path, tmp_path: Path) -> None:
+    """Rules that break only now prove nothing about a record; their author reads the line."""
+    ground = arena.load(str(race), {"game": {"length_m": 1.2}, "match": {"duration_s": 20.0}})
+    setup = Setup(
+        match_id="race", court="c", match=1, arena=ground.name, settings=ground.settings, limits={}
+    )
+    players = [simulation.player(ground, seat, "runner", late_ticks=5 * seat) for seat in (0, 1)]
+    simulation.simulate(setup, players, tmp_path, arena=ground.folder)
+    record = reader.Record.read(tmp_path / "race.mcap")
+    broken = shutil.copytree(race, tmp_path / "broken")
+    text = (broken / "rules.py").read_text()
+    (broken / "rules.py").write_text(text.replace("past.index(True)", "past.index(5)"))
+    with pytest.raises(UserError, match=r"rules.py, line \d+\) raised ValueError"):
+        [*replay.verify(record, broken, processes=1)]

@@ -221,13 +221,20 @@ class Judge:
             yield self.section
 
     def _judge(self, number: int) -> list[str]:
-        """Judge one beat; return its differences from the record, by name (texts `differs.*`)."""
+        """Judge one beat; return its differences from the record, by name (texts `differs.*`).
+
+        Raises:
+            UserError: if the arena's code breaks here and did not break in the recorded match; or
+                the record's messages contradict each other.
+        """
         record = self._record
         self._beat = number
         with fits_together(record):
             self._recorded.move(number)
             beat = self.match.beat(record.inputs.get(number, ()))
             differs = list(self._differences(number, beat))
+            if differs and (broken := [one.said for one in beat.events if one.kind == "rules"]):
+                raise UserError(*broken)
             physics = self.match.physics
             if not isinstance(physics, RecordedPhysics):
                 self.section = None

@@ -115,7 +115,7 @@ def walk_messages(path: Path, take: Take) -> Stop | None:
     def decoded(topic: str, beat: int, data: bytes) -> None:
         nonlocal values
         if topic in _COUNTED:
-            values -= lists_and_maps(data)
+            values -= lists_and_maps(data, values)
             if values < 0:
                 raise codec.BadMessage("it has more values than a match")
         take(topic, beat, data, _decode(path, topic, data))

@@ -29,18 +29,18 @@ _SIZED: Mapping[int, tuple[int, int]] = {
 besides so many bytes."""
 
 
-def lists_and_maps(data: bytes) -> int:
+def lists_and_maps(data: bytes, most: float) -> int:
     """Return how many lists and maps are in msgpack; at least as many as there are.
 
-    If few bytes could begin one, all of them are counted.
+    If few bytes could begin one, all of them are counted. The count ends above `most`.
     """
-    most = len(data) - len(data.translate(None, _LISTS_AND_MAPS))
-    return most if most <= _FEW else _counted(data)
+    could_begin = len(data) - len(data.translate(None, _LISTS_AND_MAPS))
+    return could_begin if could_begin <= _FEW else _counted(data, most)
 
 
-def _counted(data: bytes) -> int:
+def _counted(data: bytes, most: float) -> int:
     at, found, end = 0, 0, len(data)
-    while at < end:
+    while at < end and found <= most:
         head = data[at]
         at += 1
         if 0x80 <= head < 0xA0 or 0xDC <= head < 0xE0:
