@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from lacoc_shared.command import keep
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
@@ -42,9 +43,12 @@ class Target:
 def target(wanted: str) -> Target:
     """Return the target that a user named for a live stream.
 
+    An older recording in a file of this name is kept under a numbered name.
+
     Args:
         wanted: an address that begins with rtmp://, rtmps://, srt://, tcp:// or udp://; a folder,
-            which gets the files of an HLS stream; or a file that ends in .m3u8, .mp4, .mkv or .ts.
+            which gets the files of an HLS stream and is made if there is none; or a file that ends
+            in .m3u8, .mp4, .mkv or .ts.
 
     Raises:
         UserError: if it is none of these, or the folder of the file does not exist.
@@ -55,8 +59,8 @@ def target(wanted: str) -> Target:
             raise UserError(say("stream.bad-target", target=wanted))
         return Target(wanted, _SERVERS[scheme], {"rw_timeout": _SILENT_US}, is_remote=True)
     path = Path(wanted)
-    if path.is_dir() or wanted.endswith("/"):
-        path.mkdir(parents=True, exist_ok=True)
+    if path.is_dir() or not path.suffix or wanted.endswith("/"):
+        keep.make_folder(path)
         path /= _LIST
     if not path.parent.is_dir():
         raise UserError(say("film.no-folder", folder=str(path.parent)))
@@ -66,4 +70,5 @@ def target(wanted: str) -> Target:
     if path.suffix not in _FORMATS:
         raise UserError(say("stream.bad-target", target=wanted))
     form, options = _FORMATS[path.suffix]
+    keep.make_room(path)
     return Target(str(path), form, options)
