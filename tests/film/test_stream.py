@@ -77,11 +77,16 @@ def test_where_a_stream_can_go(tmp_path: Path) -> None:
     assert target("rtmp://a.example/live/key").form == "flv"
     assert target("rtmp://a.example/live/key").shown == "rtmp://a.example/live/..."
     assert target(f"{tmp_path}").address == f"{tmp_path}/index.m3u8"
-    assert target(f"{tmp_path}/new/hls").address == f"{tmp_path}/new/hls/index.m3u8"
+    assert target(f"{tmp_path}/hls").address == f"{tmp_path}/hls/index.m3u8"
     (tmp_path / "a.mkv").write_bytes(b"of yesterday")
     assert target(f"{tmp_path}/a.mkv").form == "matroska"
     assert (tmp_path / "a.1.mkv").read_bytes() == b"of yesterday"
-    for wrong in ("http://a.example", f"{tmp_path}/a.avi", f"{tmp_path}/none/a.mkv"):
+    for wrong in (
+        "http://a.example",
+        f"{tmp_path}/a.avi",
+        f"{tmp_path}/none/a.mkv",
+        f"{tmp_path}/a.example/live",
+    ):
         with pytest.raises(UserError):
             target(wrong)
 

@@ -189,7 +189,7 @@ def test_loss_and_jitter_make_no_seat_silent(hall: Hall) -> None:
 
 
 def _walks_unbroken(hall: Hall) -> bool:
-    """Tell whether the left robot walks for six keys without a silence of its seat."""
+    """Return whether the left robot walks for six keys without a silence of its seat."""
     before = len(hall.silences())
     for _ in range(6):
         hall.walks()

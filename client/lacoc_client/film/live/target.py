@@ -47,8 +47,8 @@ def target(wanted: str) -> Target:
 
     Args:
         wanted: an address that begins with rtmp://, rtmps://, srt://, tcp:// or udp://; a folder,
-            which gets the files of an HLS stream and is made if there is none; or a file that ends
-            in .m3u8, .mp4, .mkv or .ts.
+            which gets the files of an HLS stream and is made; or a file that ends in .m3u8, .mp4,
+            .mkv or .ts.
 
     Raises:
         UserError: if it is none of these, or the folder of the file does not exist.
@@ -59,7 +59,8 @@ def target(wanted: str) -> Target:
             raise UserError(say("stream.bad-target", target=wanted))
         return Target(wanted, _SERVERS[scheme], {"rw_timeout": _SILENT_US}, is_remote=True)
     path = Path(wanted)
-    if path.is_dir() or not path.suffix or wanted.endswith("/"):
+    is_new = not path.suffix and path.parent.is_dir()  # else the address lacks its beginning
+    if path.is_dir() or is_new or wanted.endswith("/"):
         keep.make_folder(path)
         path /= _LIST
     if not path.parent.is_dir():
