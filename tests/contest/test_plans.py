@@ -1,5 +1,6 @@
 """Tests of the stages in a contest file: each mistake has one clear sentence."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
 from lacoc_server.contest.league.facts import Closed, Drawn, Entered, Planned, Unplanned, new
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.live.run import play_live
+from lacoc_shared.command import plugins
 from lacoc_shared.mistakes import UserError
 
 GROUPS = '[stage.groups]\nformat = "round-robin"\n'
@@ -92,6 +95,19 @@ def test_all_wrong_stages_are_named_at_once(tmp_path: Path) -> None:
     groups, cup = str(wrong.value).splitlines()
     assert "[stage.groups]" in groups
     assert "[stage.show]" in cup
+
+
+@pytest.mark.parametrize("form", ["round-robin", "open"])
+def test_a_game_in_a_folder_is_for_contests_without_courts(tmp_path: Path, form: str) -> None:
+    """A stage's game may be in a folder beside the contest file; `contest run` refuses it."""
+    othello = plugins.folder_of(plugins.package("lacoc.arenas", "arena", "othello"))
+    shutil.copytree(othello, tmp_path / "mine", ignore=shutil.ignore_patterns("__pycache__"))
+    where = folder(tmp_path, f'[stage.a]\nformat = "{form}"\narena = "./mine"\n')
+
+    (found,) = filter(None, (*where.plans, where.open_stage))
+    assert found.arena == str(tmp_path / "mine")
+    with pytest.raises(UserError, match=r"only installed games, not those in folders \(.*mine\)"):
+        play_live(where.file, print, print, print)
 
 
 def test_stages_with_other_levels_are_other_games(tmp_path: Path) -> None:

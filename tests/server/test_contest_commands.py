@@ -59,6 +59,27 @@ def test_a_new_file_has_no_secret_and_keeps_the_older(tmp_path: Path) -> None:
     assert not any(token in file.read_text() for token in tokens.values())
 
 
+def test_a_file_is_written_only_if_it_is_missing(tmp_path: Path) -> None:
+    """With --if-missing, what an organiser wrote stays, and nothing is put aside."""
+    file = tmp_path / "contest.toml"
+    run("init", str(file), "--if-missing")
+    file.write_text(file.read_text() + "# mine\n")
+    files = {path: path.read_text() for path in tmp_path.iterdir()}
+    run("init", str(file), "--if-missing", "--courts", "2")
+    assert {path: path.read_text() for path in tmp_path.iterdir()} == files
+
+
+@pytest.mark.parametrize("kind", [(), ("--open",)])
+def test_init_and_check_doubt_a_game_in_a_folder(tmp_path: Path, kind: tuple[str, ...]) -> None:
+    """Courts can't play a game that is not installed; without courts it can be played."""
+    othello = Path(__file__).parents[2] / "arenas" / "lacoc_arenas" / "othello"
+    file = tmp_path / "contest.toml"
+    for words in (("init", str(file), "--arena", str(othello), *kind), ("check", str(file))):
+        result = CliRunner().invoke(app, words)
+        assert result.exit_code == 0
+        assert f"not those in folders ({othello})" in " ".join(result.stderr.split())
+
+
 def test_a_contest_of_open_matches_is_written(tmp_path: Path) -> None:
     """`init --open` plans no draw: one stage, in which whoever has a link plays."""
     file = tmp_path / "contest.toml"

@@ -124,8 +124,9 @@ def run(
         bool,
         typer.Option(
             "--entries",
-            help="First let teams enter on the page /enter, until entries_close or until you close "
-            "entries on the page /office. Not with --headless.",
+            help="First let teams enter on the page /enter, until you close entries on the page "
+            "/office. If the file has entries_close, they may enter until then also without this "
+            "option. Not with --headless.",
         ),
     ] = False,
     until_over: Annotated[

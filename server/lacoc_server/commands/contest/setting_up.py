@@ -8,12 +8,12 @@ import typer
 
 from lacoc_arenas import arena as arenas
 from lacoc_robots.limits import Limits
-from lacoc_server.contest.kept.plans import doubts, open_stage, plans
+from lacoc_server.contest.kept.plans import doubts, not_for_courts, open_stage, plans
 from lacoc_server.contest.league.facts import Planned
 from lacoc_shared.command import screen
 from lacoc_shared.command.keep import save
 from lacoc_shared.contest import file as contests
-from lacoc_shared.contest.courts import ContestCourt, wrong_in
+from lacoc_shared.contest.courts import ContestCourt, beside, wrong_in
 from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.mistakes import Gathered, UserError
 from lacoc_shared.network.address import DEFAULT_PORT
@@ -145,21 +145,28 @@ def init(
     proxy: Annotated[
         str, typer.Option(metavar="ADDRESS", help="Address or network of that proxy.")
     ] = _PROXY,
+    if_missing: Annotated[
+        bool, typer.Option("--if-missing", help="Do nothing if the file is there already.")
+    ] = False,
 ) -> None:
     """Write a contest file with comments: groups and a knockout, or with --open friendly matches.
 
     All tokens are beside it, in a file of their own that only you can read (contest.secrets.json).
     If there is a contest file of that name already, it is kept under another name.
     """
+    if if_missing and file.exists():
+        screen.note(say("contest.stays-as-it-is", file=str(file)))
+        return
     KeySpace(court)
+    arena = beside(Path.cwd(), arena)
     arenas.load(arena)
     names = [court] if courts == 1 else [f"{court}-{n + 1}" for n in range(courts)]
     public = None if pages is None else PublicAddress.of(pages, proxies=[proxy])
     text = _text(arena, names, public, contests.secrets_path(file).name, friendly=friendly)
     kept = save(file, text.encode())
-    secrets = contests.load(file).secrets
+    contest = contests.load(file)
     for name in names:
-        secrets.referee(name)
+        contest.secrets.referee(name)
     if kept is not None:
         screen.note(say("command.kept", path=str(file), kept=str(kept)))
     if public is not None:
@@ -168,6 +175,8 @@ def init(
         screen.note(say("contest.written-open", file=str(file)))
     else:
         screen.note(say("contest.written", file=str(file)))
+    if doubt := not_for_courts([*plans(contest, file), open_stage(contest, file)]):
+        screen.warn(doubt)
 
 
 def _text(
@@ -209,12 +218,13 @@ def check(file: FileToRead = FILE) -> None:
     stages: list[Planned] = []
     with found:
         stages = plans(contest, file)
+    friendly = None
     with found:
-        open_stage(contest, file)
+        friendly = open_stage(contest, file)
     found.check()
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
-    for doubt in doubts(stages):
+    for doubt in filter(None, (*doubts(stages), not_for_courts([*stages, friendly]))):
         screen.warn(doubt)
     close = contest.entries_close
     if close is not None and close.astimezone(UTC) <= datetime.now(UTC):

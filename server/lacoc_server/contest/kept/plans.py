@@ -1,6 +1,6 @@
 """The stages of a contest, as its contest file plans them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
@@ -16,7 +16,7 @@ from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSetti
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
-from lacoc_shared.contest.courts import wrong_in
+from lacoc_shared.contest.courts import beside, wrong_in
 from lacoc_shared.contest.file import ContestFile, wrong_entries
 from lacoc_shared.contest.wrong_value import convert, place_and_words
 from lacoc_shared.mistakes import Gathered, UserError, text_of
@@ -91,11 +91,12 @@ def open_stage(contest: ContestFile, file: Path) -> OpenStage | None:
     ((name, entries),) = found.items()
     try:
         table = convert(entries, _OpenTable, f"stage.{text_of(name)}")
-        arena = arenas.load(table.arena, table.settings)
+        path = beside(file.resolve().parent, table.arena)
+        arena = arenas.load(path, table.settings)
     except UserError as error:
         raise wrong_entries(file, error) from None
     seats = tuple(seat.id for seat in arena.seats)
-    return OpenStage(table.arena, table.settings, contest.limits, seats)
+    return OpenStage(path, table.settings, contest.limits, seats)
 
 
 def plans(contest: ContestFile, file: Path) -> list[Planned]:
@@ -115,7 +116,7 @@ def plans(contest: ContestFile, file: Path) -> list[Planned]:
             continue
         plan = None
         with wrong:
-            plan = _read(name, table, contest, found)
+            plan = _read(name, table, contest, found, file.resolve().parent)
         found[name] = plan
     try:
         wrong.check()
@@ -125,7 +126,11 @@ def plans(contest: ContestFile, file: Path) -> list[Planned]:
 
 
 def _read(
-    name: str, table: Mapping[str, Any], contest: ContestFile, before: Mapping[str, Planned | None]
+    name: str,
+    table: Mapping[str, Any],
+    contest: ContestFile,
+    before: Mapping[str, Planned | None],
+    folder: Path,
 ) -> Planned:
     """Read one stage.
 
@@ -134,12 +139,13 @@ def _read(
         table: its table in the file.
         contest: the contest file.
         before: the stages before it in the file, by name; None: that stage has wrong settings.
+        folder: folder of the file; the path of an arena starts there.
 
     Raises:
         UserError: at the first wrong setting.
     """
     try:
-        plan = _plan(name, table, contest.limits)
+        plan = _plan(name, table, contest.limits, folder)
         _check(plan, before, [*contest.courts])
         game(plan)
     except msgspec.ValidationError as error:
@@ -177,6 +183,16 @@ def game(plan: Planned) -> Arena:
     return arena
 
 
+def not_for_courts(stages: Iterable[Planned | OpenStage | None]) -> Phrase | None:
+    """Return a sentence if the game of a stage is in a folder; None: all games are installed.
+
+    Courts play only installed games: code must not run because the office names its folder.
+    """
+    games = dict.fromkeys(stage.arena for stage in stages if stage is not None)
+    folders = [name for name in games if not arenas.is_installed(name)]
+    return say("contest.game-in-folder", folders=folders) if folders else None
+
+
 def note_plans(store: FactStore, wanted: list[Planned]) -> None:
     """Append, as facts, the plans that are new or have changed, and which are no longer there.
 
@@ -206,7 +222,9 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
     store.decide(decision)
 
 
-def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:
+def _plan(
+    name: str, table: Mapping[str, Any], limits: Mapping[str, float], folder: Path
+) -> Planned:
     own = {key: value for key, value in table.items() if key in _StageEntries.__struct_fields__}
     rest = {key: value for key, value in table.items() if key not in own}
     if unknown := [key for key in rest if key not in _SETTINGS]:
@@ -240,7 +258,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
         final_court=stage.final_court,
         final_break_s=stage.final_break_s,
         teams=stage.teams,
-        arena=stage.arena,
+        arena=beside(folder, stage.arena),
         arena_settings=stage.settings,
         limits=dict(limits),
     )

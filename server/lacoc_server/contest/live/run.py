@@ -18,6 +18,7 @@ from lacoc_server.contest.kept import machine
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.event_code import EventCode
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.plans import not_for_courts
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import generation
@@ -35,6 +36,7 @@ from lacoc_server.contest.standby.tenure import Tenure
 from lacoc_shared.command.replacing import write
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.contest.link import Link
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, say
 
@@ -97,8 +99,9 @@ def play_live(
         speed: 2 plays twice as fast as real time.
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
-        entering: whether teams may enter until the time in the contest file, or until the organiser
-            closes entries; False: the first stage is drawn at once.
+        entering: whether teams may enter until the organiser closes entries, also if the contest
+            file has no time when entries close; False: the first stage is drawn at that time, or
+            at once if there is none.
         until_over: whether to end soon after the contest is over; False: courts, pages and office
             stay until somebody interrupts them.
 
@@ -108,10 +111,12 @@ def play_live(
     Raises:
         KeyboardInterrupt: if it is interrupted before the contest is over.
         Retired: if the contest's office went on at another machine.
-        UserError: if the contest runs already, has no stage or too few teams, or
-            something goes wrong.
+        UserError: if the contest runs already, has no stage or too few teams, if a game is not
+            installed, or if something goes wrong.
     """
     where = ContestFolder(file)
+    if wrong := not_for_courts([*where.plans, where.open_stage]):
+        raise UserError(wrong)
     secrets = where.contest.secrets
     for court in where.contest.courts:
         secrets.referee(court)  # a machine to which the file is copied makes none
@@ -125,6 +130,8 @@ def play_live(
             sealing = Sealing(secrets.standby)
             stack.enter_context(Lookout(tenure, sealing))
             tenure.check()
+        closes_ms = where.contest.closes_ms
+        entering = entering or closes_ms > time.time_ns() // 1_000_000
         prepare(where, store, entering=entering)
         logs = stack.enter_context(Scratch("contest"))
         run_here = partial(_run_here, where, logs, speed, tell)
@@ -135,7 +142,7 @@ def play_live(
             for name in filter(addresses.get, addresses)
         ]
         rest_ms = round(1000 * where.contest.least_rest_s)
-        draw_from_ms = (where.contest.closes_ms or None) if entering else 0
+        draw_from_ms = (closes_ms or None) if entering else 0
         stage, open_matches = where.open_stage, None
         if stage is not None:
             open_matches = OpenMatches(stage, secrets.seat, tell)
@@ -192,6 +199,9 @@ def play_live(
             for name in addresses
         }
         opened(Opened(url, addresses, link("office", secrets.organiser), code.value, seats))
+        if entering and where.plans and not office.contest.closed:
+            until = where.contest.entries_close if draw_from_ms else None
+            tell(say("contest.entries-open", time=until.isoformat() if until else None))
         over_s = math.inf  # when the contest was over, as far as is known
         is_late = speed <= 1 and len(addresses) > 1
         farewell_s = _LATE_S if is_late else _FAREWELL_S
