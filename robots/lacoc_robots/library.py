@@ -53,15 +53,7 @@ def sample_gait_files(name_or_path: str) -> FolderGait:
     Raises:
         UserError: if there is no such robot, or a file can't be read.
     """
-    return gait_files_in(robot_folder(name_or_path))
-
-
-def gait_files_in(folder: Path) -> FolderGait:
-    """Read the two gait files of a folder; a file that is not there is None.
-
-    Raises:
-        UserError: if a file can't be read.
-    """
+    folder = robot_folder(name_or_path)
     postures, locomotion = (
         SentFile(name, read_content(folder / name)) if (folder / name).exists() else None
         for name in GAIT_NAMES

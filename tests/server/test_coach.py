@@ -3,6 +3,7 @@
 import contextlib
 import json
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,9 @@ from hypothesis import strategies as st
 from sample_walks import entry_of
 
 from lacoc_robots.library import find_robot
+from lacoc_robots.reading import load_gait
 from lacoc_robots.robot_file import read_robot
+from lacoc_server.studio.coach.coach import coached_key
 from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import STEP_DEG, what_matters
@@ -26,6 +29,7 @@ from lacoc_server.trial.reasons.goal import Goal
 from lacoc_shared.command import cli
 from lacoc_shared.gait.tables import LocomotionTable
 from lacoc_shared.gait.text import read_gait
+from lacoc_shared.mistakes import UserError
 
 SAMPLE = Path(__file__).parents[2] / "robots/lacoc_robots/samples/hexapod/Loco-data.txt"
 BEST = (12, -7, 30, 5, 0, 21)
@@ -187,6 +191,16 @@ def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_p
         assert code != 0
 
 
+def test_a_table_that_makes_no_key_is_told(tmp_path: Path) -> None:
+    """With three postures there is no key of level B: the message names the missing rows."""
+    text = SAMPLE.read_text(encoding="utf-8").replace("Posture\t9", "Posture\t4")
+    few = tmp_path / SAMPLE.name
+    few.write_text(re.sub(r"^[4-9] Key.*\n", "", text, flags=re.MULTILINE))
+    gait = load_gait(few, read_robot(find_robot("hexapod")[1], "robot.toml"))
+    with pytest.raises(UserError, match=r"postures 1 to 4\. Type these rows"):
+        coached_key(gait, Goal.FORWARD)
+
+
 @pytest.mark.slow
 @pytest.mark.long
 def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
@@ -211,6 +225,7 @@ def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None
     assert "other sign" in repaired["said"]
     assert told["after"]["speed_mm_s"] > 2 * told["before"]["speed_mm_s"]
     assert told["worse"] == []
+    assert abs(told["after"]["drift_deg_s"]) < 5
     robot = read_robot(find_robot("hexapod")[1], "robot.toml")
     table = read_gait(out.read_bytes(), out.name, legs=robot.labels, range_deg=robot.ranges_deg)
     assert isinstance(table, LocomotionTable)

@@ -25,7 +25,7 @@ from stage import (
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.bot import Key
 from lacoc_arenas.brains import ghost
-from lacoc_robots.library import find_robot
+from lacoc_robots.library import find_robot, robot_folder
 from lacoc_server.commands import simulate as simulate_commands
 from lacoc_server.commands.simulate import simulate_command
 from lacoc_server.match.match import Match
@@ -191,6 +191,23 @@ def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
 
     (anna / "robot.toml").write_bytes(find_robot("long-legs")[1])
     assert player(OTHELLO, 0, f"straight@{anna}").join.robot.data == find_robot("long-legs")[1]
+
+
+def test_a_workbook_in_a_folder_is_enough(tmp_path: Path) -> None:
+    """The workbook is sent as text, and level B is made from it, as when a team enters."""
+    ben = handed_in(tmp_path / "ben", None)
+    book = (robot_folder("hexapod") / "Loco-data.xlsx").read_bytes()
+    (ben / "Loco-data.xlsx").write_bytes(book)
+    join = player(OTHELLO, 0, f"straight@{ben}").join
+    assert join.postures is not None
+    assert join.locomotion is not None
+    assert join.postures.name == "ben/Loco-data.xlsx"
+    assert b"\0" not in join.postures.data
+
+    (ben / "Loco-data.xlsx").write_bytes(book[:1000])
+    with pytest.raises(FileRefused) as refused:
+        player(OTHELLO, 0, f"straight@{ben}")
+    assert refused.value.mistakes[0].file == "ben/Loco-data.xlsx"
 
 
 def test_where_a_gait_is_looked_for_is_said(tmp_path: Path) -> None:

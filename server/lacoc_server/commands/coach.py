@@ -287,6 +287,13 @@ def _repaired(one: Repaired, goal: Goal) -> Phrase:
 
 
 def _as_json(reply: CoachReply) -> dict[str, Any]:
+    before, after = (
+        {"score": score, **{name: figures[name] for name in ("speed_mm_s", "drift_deg_s")}}
+        for score, figures in (
+            (reply.score_before, reply.before),
+            (reply.score_after, reply.after),
+        )
+    )
     return {
         "key": reply.key,
         "matters": [{**asdict(one.cell), "up": one.up, "down": one.down} for one in reply.matters],
@@ -299,8 +306,8 @@ def _as_json(reply: CoachReply) -> dict[str, Any]:
             {**asdict(one.cell), "from_deg": one.from_deg, "to_deg": one.to_deg}
             for one in reply.changes
         ],
-        "before": {"score": reply.score_before, "speed_mm_s": reply.before["speed_mm_s"]},
-        "after": {"score": reply.score_after, "speed_mm_s": reply.after["speed_mm_s"]},
+        "before": before,
+        "after": after,
         "upright": reply.after["upright"],
         "belly_share": reply.after["belly_share"],
         "trials": reply.trials,

@@ -7,13 +7,8 @@ import msgspec
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas import brains
-from lacoc_robots.library import (
-    GAIT_NAMES,
-    find_robot,
-    gait_files_in,
-    robot_folder,
-    sample_gait_files,
-)
+from lacoc_robots.library import GAIT_NAMES, find_robot, robot_folder, sample_gait_files
+from lacoc_robots.seat_files import SeatFiles, as_text, files_in, with_level_b
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Beat, Match
 from lacoc_server.simulate.inputs import Inputs, Player, opening, whole_match
@@ -102,18 +97,19 @@ def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
 
 
 def _of_folder(arena: arenas.Arena, folder: Path, robot: str) -> _Files:
-    """Read the files that a team handed in; mistakes name each file with its folder."""
+    """Read the files of a team, as for a contest; mistakes name each file with its folder."""
     folder = folder.expanduser().resolve()
     if not folder.is_dir():
         raise UserError(say("simulate.no-folder", folder=str(folder)))
     own = folder / "robot.toml"
-    files = (SentFile(*find_robot(str(own) if own.exists() else robot)), *gait_files_in(folder))
-    _require_gait(arena, files, folder)
-    sent, postures, locomotion = (
+    chosen = SentFile(*find_robot(str(own) if own.exists() else robot))
+    named = (
         file and msgspec.structs.replace(file, name=f"{text_of(folder.name)}/{file.name}")
-        for file in files
+        for file in files_in(folder)._replace(robot=chosen)
     )
+    sent, postures, locomotion = with_level_b(as_text(SeatFiles(*named)))
     assert sent is not None
+    _require_gait(arena, (sent, postures, locomotion), folder)
     return sent, postures, locomotion
 
 

@@ -68,7 +68,8 @@ def coached_key(gait: Gait, goal: Goal, key: int | None = None) -> int:
         key = _TURNS.get(goal, found if level is Level.LOCOMOTION else 0)
     if gait.sequence(Level.LOCOMOTION, key) is None:
         there = [f"B{one}" for one in gait.keys(Level.LOCOMOTION)]
-        raise UserError(say("trial.no-key", key=f"B{key}", keys=there))
+        missing = say("trial.no-key", key=f"B{key}", keys=there)
+        raise UserError(missing if there else say("coach.no-keys"))
     return key
 
 
