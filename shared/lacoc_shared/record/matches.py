@@ -83,7 +83,10 @@ def is_over(name: MatchName, segments: Mapping[int, Path]) -> bool:
 
 
 def unpacked(folder: Path, court: str) -> list[str]:
-    """Return the ids of a court's matches that are over but whose segments are not joined yet."""
+    """Return the ids of a court's matches that are over, but whose segments are not joined yet.
+
+    A match whose files a process still has open is left out.
+    """
     return [
         str(name)
         for name, segments in court_matches(folder, court).items()
