@@ -74,7 +74,7 @@ class Figures:
 
 
 def measure(walk: Walk) -> Figures:
-    """Compute the figures of a walk over its `span`."""
+    """Compute the figures of a walk over its `span`: the ticks that are measured."""
     span = walk.span
     part = slice(span.first, span.end)
     seconds = max(span.seconds, BEAT_S)

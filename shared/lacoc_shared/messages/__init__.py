@@ -501,7 +501,10 @@ class HealthVerdict(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Health(msgspec.Struct, frozen=True, kw_only=True):
-    """How a court and its links work now; sent twice a second, and at once when `gains` changes."""
+    """How a court and its links work now; sent twice a second, and whenever `gains` changes.
+
+    `gains` says what each robot could gain next.
+    """
 
     match: int
     beat: int

@@ -17,10 +17,10 @@ _STAYS_S = 2.5
 class Aside:
     """Chooses the court that the second picture shows.
 
-    The second picture shows moments for which a cut is not worth it or not allowed. It appears at
-    the moment, disappears soon after, and never shows the court on air. A change to the next moment
-    is no cut, so it does not use up one of the few cuts of a minute. Each court stays at least two
-    seconds, unless it vanishes or comes on air.
+    The second picture shows moments for which a cut is not worth it or not allowed. It appears up
+    to a second before the moment, disappears soon after it, and never shows the court on air. A
+    change to the next moment is no cut, so it does not use up one of the few cuts of a minute. Each
+    court stays at least two seconds, unless it vanishes or comes on air.
     """
 
     def __init__(self) -> None:

@@ -223,7 +223,7 @@ class DesignPage:
         return (await self._checked_files(asked, learner))._asdict()
 
     async def _checked_files(self, asked: requests.PlayAsk, learner: Learner) -> SeatFiles:
-        """Check a table, and make robot and gait files of it.
+        """Check a table with its robot, and return the files of both.
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.

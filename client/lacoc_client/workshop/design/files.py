@@ -1,4 +1,4 @@
-"""The content of gait and robot files: from bytes to a table, and from a table to bytes."""
+"""The content of gait and robot files: from bytes to a table or a robot's text, and back."""
 
 from dataclasses import dataclass
 from pathlib import PurePath

@@ -199,7 +199,7 @@ class Answered(_EvidenceKind, frozen=True, kw_only=True, tag="answered"):
 
 
 class Hand(_EvidenceKind, frozen=True, kw_only=True, tag="hand"):
-    """The student raised a hand to ask for help, or took it down."""
+    """The student raised a hand to ask for help, or it was taken down."""
 
     up: bool
 

@@ -174,7 +174,8 @@ class _Counter:
         """Count the work in one XML file of the workbook; if it is invalid, up to the error.
 
         Raises:
-            _TooMuchError: if there is too much of something, or entities are defined.
+            _TooMuchError: if there is too much of something, or a document type, which can define
+                entities.
         """
         self._shared, self._formula, self._length = {}, None, 0
         parser = expat.ParserCreate()

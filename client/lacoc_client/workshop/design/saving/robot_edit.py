@@ -155,7 +155,7 @@ def _put(table: Any, name: str, at: int | None, value: float) -> None:
 
 
 def _like(old: Any, value: float) -> Any:
-    """Return a number in the style of the old one: without a point if both are whole."""
+    """Return a number as the old one is written: a whole one without a point if that has none."""
     if isinstance(old, int) and value == int(value):
         return int(value)
     return float(value)

@@ -152,7 +152,8 @@ def double_bracket(stage: Stage) -> Iterator[Pairing]:
 
     In odd rounds of the losers' bracket, the teams that are still in it meet each other. In even
     rounds they meet the teams that just fell from the winners' bracket. These are reordered
-    (`_turned`), so that in the first half of the losers' bracket no two teams meet again.
+    (`_turned`), so that with up to 64 teams no two meet again in the first half of the losers'
+    bracket.
     """
     places = seeded(stage.entries)
     last = len(places).bit_length() - 1
