@@ -221,8 +221,8 @@ def test_the_next_match_does_not_wait_for_a_slow_disk(tmp_path: Path) -> None:
     """While a slow disk stores the finished match, frames of the next come less than 1 s apart."""
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
-    slow.touch()
     with served(contest, folder, before=sync(slow, "4")), party(contest) as those:
+        slow.touch()
         frames = those.session.mailbox("lacoc/main/frame", 10_000)
         those.decide(Abort())
         those.decide(Next())
@@ -244,8 +244,8 @@ def test_a_court_is_killed_before_its_disk_has_the_last_match(tmp_path: Path) ->
     """
     contest, folder = write_contest(tmp_path / "contest.toml"), tmp_path / "recordings"
     slow = tmp_path / "slow"
-    slow.touch()
     with served(contest, folder, before=sync(slow, "60")) as court, party(contest) as those:
+        slow.touch()
         those.decide(Abort())
         those.decide(Next())
         those.until(lambda: (those.phase, those.frame.match) == (Phase.LOBBY, 2))
