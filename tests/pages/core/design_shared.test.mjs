@@ -6,6 +6,7 @@ import { cellNamed, digestOf, NO_FILE_ENTRY } from "../../../client/web/src/core
 import { History } from "../../../client/web/src/core/design/history.ts";
 import { Outbox } from "../../../client/web/src/core/design/outbox.ts";
 import { changesBetween } from "../../../client/web/src/core/design/rebase.ts";
+import { namesFor } from "../../../client/web/src/core/design/row_names.ts";
 import { addRow, removeRow } from "../../../client/web/src/core/design/rows.ts";
 import { SharedTable } from "../../../client/web/src/core/design/shared_table.ts";
 import * as t from "../../../client/web/src/core/design/table.ts";
@@ -294,6 +295,19 @@ test("two rows that are inserted at the same place at the same time are two", ()
   const rows = one.history.table.value.rows;
   assert.deepEqual(new Set([rows[1].cells[0], rows[2].cells[0]]), new Set([1, 2]));
   assert.deepEqual(other.history.table.value.rows, rows);
+});
+
+test("of ten thousand pages that insert at one place each draws another name", () => {
+  const [{ shared, history }] = pair();
+  history.apply("add", (table) => addRow(table, 0));
+  const names = new Set();
+  for (let number = 0; number < 10_000; number++) {
+    const content = contentOf(history.table.value);
+    for (const name of namesFor(content, shared.entries, () => (number + 0.5) / 10_000)) {
+      names.add(name);
+    }
+  }
+  assert.equal(names.size, walking.rows.length + 10_000);
 });
 
 test("rows can be added at one place again and again, and ranks stay short", () => {

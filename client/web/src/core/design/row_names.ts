@@ -20,8 +20,11 @@ import type { Row } from "./table";
 
 /** Longest rank after its point: the gateway takes no more [digits]. */
 const DIGITS = 12;
-/** A rank is drawn of so many at least: two pages that insert at one place draw different ones. */
-const DRAWN = 1000;
+/** A rank is drawn of so many at least: so two pages that insert at one place draw the same hardly
+ * ever. They would have one row between them, and one of the two insertions would be lost. */
+const DRAWN = 10_000;
+/** Share of the room between two ranks, near its middle, in which a rank is drawn. */
+const NEAR = 0.2;
 
 type Entries = { get(name: string): Entry | undefined; keys(): Iterable<string> };
 
@@ -99,9 +102,9 @@ function between(before: string | null, after: string | null, chance: () => numb
   if (start > 99) return null;
   for (let digits = 0; digits <= DIGITS; digits++) {
     const room = Math.floor((high - start) * 10 ** digits) - 1;
-    if (room < DRAWN) continue;
+    if (room * NEAR < DRAWN) continue;
     // Near the middle: the next one has room on both sides.
-    const steps = 1 + Math.floor(room * (0.4 + 0.2 * chance()));
+    const steps = 1 + Math.floor(room * (0.5 + NEAR * (chance() - 0.5)));
     const rank = (start + steps / 10 ** digits).toFixed(digits).replace(".", "_");
     return rankOf(rank) > low && rankOf(rank) < high ? rank : null;
   }
