@@ -96,7 +96,16 @@ def slow_screen() -> bool:
 
 
 @pytest.fixture
-def open_page(browser: Browser, console: Console, slow_screen: bool) -> Iterator[OpenPage]:
+def servers() -> Iterator[ExitStack]:
+    """Give a stack for servers of pages; it ends after the pages are closed, so no page sees it."""
+    with ExitStack() as stack:
+        yield stack
+
+
+@pytest.fixture
+def open_page(
+    browser: Browser, console: Console, slow_screen: bool, servers: ExitStack
+) -> Iterator[OpenPage]:
     """Give a function that opens pages, each in a fresh browser context, like another person's."""
     contexts: list[BrowserContext] = []
 

@@ -3,6 +3,7 @@
 import re
 import shutil
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -106,7 +107,9 @@ def test_a_published_folder_shows_the_contest_and_its_replays(
     expect(page.locator("h1")).to_have_text("Tiny Cup")
 
 
-def test_decisions_stand_with_their_reasons(cup: Cup, open_page: OpenPage, tmp_path: Path) -> None:
+def test_decisions_stand_with_their_reasons(
+    cup: Cup, open_page: OpenPage, servers: ExitStack, tmp_path: Path
+) -> None:
     """The page says what was decided and why, the newest first, and who has left."""
     shutil.copytree(cup.folder, tmp_path, dirs_exist_ok=True)
     facts = decode((cup.folder / "facts.json").read_bytes())
@@ -119,24 +122,24 @@ def test_decisions_stand_with_their_reasons(cup: Cup, open_page: OpenPage, tmp_p
     ]
     made = sheet("Tiny Cup", compute([*facts, *more], FORMATS))
     (tmp_path / "contest.json").write_bytes(encode(made))
-    with served(tmp_path) as url:
-        page = open_page(viewport=LAPTOP)
-        page.goto(url)
-        left, right = league.teams
-        state = page.locator(".head .state")
-        expect(state).to_contain_text("2 teams")
-        expect(state).to_contain_text(f" · withdrawn: {TEAMS[2]}")
-        told = page.locator("#decisions li")
-        expect(told).to_have_count(2)
-        expect(told.first).to_contain_text(f"{TEAMS[2]} has withdrawn")
-        expect(told.first).to_contain_text("Reason: robot <b>broken</b>")
-        expect(told.last).to_contain_text(f"the result is {left} 3 : 9 {right}")
-        told.last.get_by_role("link").click()
-        expect(page.locator(f'[id="match-{league.pairing}"]')).to_be_in_viewport()
+    url = servers.enter_context(served(tmp_path))
+    page = open_page(viewport=LAPTOP)
+    page.goto(url)
+    left, right = league.teams
+    state = page.locator(".head .state")
+    expect(state).to_contain_text("2 teams")
+    expect(state).to_contain_text(f" · withdrawn: {TEAMS[2]}")
+    told = page.locator("#decisions li")
+    expect(told).to_have_count(2)
+    expect(told.first).to_contain_text(f"{TEAMS[2]} has withdrawn")
+    expect(told.first).to_contain_text("Reason: robot <b>broken</b>")
+    expect(told.last).to_contain_text(f"the result is {left} 3 : 9 {right}")
+    told.last.get_by_role("link").click()
+    expect(page.locator(f'[id="match-{league.pairing}"]')).to_be_in_viewport()
 
 
 def test_a_pause_ends_on_the_page_at_its_moment(
-    cup: Cup, open_page: OpenPage, tmp_path: Path
+    cup: Cup, open_page: OpenPage, servers: ExitStack, tmp_path: Path
 ) -> None:
     """Nobody has to load the page again: the pause goes by itself, and a decided place says why."""
     shutil.copytree(cup.folder, tmp_path, dirs_exist_ok=True)
@@ -147,13 +150,13 @@ def test_a_pause_ends_on_the_page_at_its_moment(
         pause=Break(until_ms=until_ms, fixture=say("fixture.final", stage=None)),
     )
     (tmp_path / "contest.json").write_bytes(encode(made))
-    with served(tmp_path) as url:
-        page = open_page(viewport=LAPTOP)
-        page.clock.install(time=(until_ms - 5000) / 1000)
-        page.goto(f"{url}?big")
-        expect(page.locator(".banner")).to_contain_text("lunch")
-        page.clock.run_for(6000)
-        expect(page.locator(".banner")).to_have_count(0)
+    url = servers.enter_context(served(tmp_path))
+    page = open_page(viewport=LAPTOP)
+    page.clock.install(time=(until_ms - 5000) / 1000)
+    page.goto(f"{url}?big")
+    expect(page.locator(".banner")).to_contain_text("lunch")
+    page.clock.run_for(6000)
+    expect(page.locator(".banner")).to_have_count(0)
 
 
 def test_a_bracket_shows_all_its_texts(cup: Cup, open_page: OpenPage) -> None:

@@ -2,9 +2,9 @@
 
 import itertools
 import json
+from contextlib import ExitStack
 from pathlib import Path
 from random import Random
-from typing import Any
 
 import pytest
 from chance_event import Event
@@ -48,12 +48,11 @@ def test_contest(
     tmp_path: Path,
     built_pages: Path,
     open_page: OpenPage,
-    console: Any,
+    servers: ExitStack,
     teams: int,
     courts: int,
 ) -> None:
     """/contest shows a Swiss stage and a bracket: readable on a phone, and all slides fit."""
-    console.expect(r"contest\.json")  # the server ends before the pages are closed
     event = Event(teams, courts, Random(teams))
     event.begin("swiss", "swiss", event.names, rounds=3)
     for _ in event.play("swiss"):
@@ -68,27 +67,27 @@ def test_contest(
     for site in plugins.installed("lacoc.site").values():
         site.load()(tmp_path)
     (tmp_path / "contest.json").write_text(text, "utf-8")
-    with served(tmp_path) as url:
-        for screen, locale in ((PHONE, "ja-JP"), (LAPTOP, "en-GB")):
-            page = open_page(**screen, locale=locale)
-            page.goto(url)
-            rows = page.locator("#stage-swiss .standings tbody tr")
-            expect(rows).to_have_count(teams)
-            assert is_narrow(page)
-            assert violations(page) == []
-        page = open_page(**PROJECTOR)
-        page.clock.install()
-        page.goto(f"{url}?big")
-        slides = []
-        for _ in range(12):
-            slide = page.locator(".slide")
-            slides.append(slide.get_attribute("data-slide"))
-            assert slide.evaluate("(e) => e.scrollHeight <= e.clientHeight"), slides
-            page.clock.run_for(12_500)
-        assert {*slides} >= {"now", "bracket"}
+    url = servers.enter_context(served(tmp_path))
+    for screen, locale in ((PHONE, "ja-JP"), (LAPTOP, "en-GB")):
+        page = open_page(**screen, locale=locale)
+        page.goto(url)
+        rows = page.locator("#stage-swiss .standings tbody tr")
+        expect(rows).to_have_count(teams)
+        assert is_narrow(page)
+        assert violations(page) == []
+    page = open_page(**PROJECTOR)
+    page.clock.install()
+    page.goto(f"{url}?big")
+    slides = []
+    for _ in range(12):
+        slide = page.locator(".slide")
+        slides.append(slide.get_attribute("data-slide"))
+        assert slide.evaluate("(e) => e.scrollHeight <= e.clientHeight"), slides
+        page.clock.run_for(12_500)
+    assert {*slides} >= {"now", "bracket"}
 
 
-def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any) -> None:
+def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, servers: ExitStack) -> None:
     """/office shows two hundred entries, and the timetable of their first round.
 
     Entries are open without --entries, because the contest file has a time when they close.
@@ -101,16 +100,15 @@ def test_office(tmp_path: Path, built_pages: Path, open_page: OpenPage, console:
     file.write_text(text.replace("# entries_close = 2030-", "entries_close = 2999-"))
     for team in names(MANY):
         organiser.enter(file, team, None, "planner", "")
-    console.expect_a_break()  # the office ends before the pages are closed
-    with contest_run(file) as run:
-        url = run.opened["office"]
-        phone, laptop = open_page(**PHONE, locale="ja-JP"), open_page(**LAPTOP)
-        for page in (phone, laptop):
-            page.goto(url)
-            expect(page.locator(".entries li")).to_have_count(MANY)
-        laptop.get_by_role("button", name="Close entries and draw").click()
-        laptop.get_by_role("button", name=f"Close and draw with {MANY} teams").click()
-        for page in (laptop, phone):
-            expect(page.locator(".slot").first).to_be_visible()
-            assert is_narrow(page)
-            assert violations(page) == []
+    run = servers.enter_context(contest_run(file))
+    url = run.opened["office"]
+    phone, laptop = open_page(**PHONE, locale="ja-JP"), open_page(**LAPTOP)
+    for page in (phone, laptop):
+        page.goto(url)
+        expect(page.locator(".entries li")).to_have_count(MANY)
+    laptop.get_by_role("button", name="Close entries and draw").click()
+    laptop.get_by_role("button", name=f"Close and draw with {MANY} teams").click()
+    for page in (laptop, phone):
+        expect(page.locator(".slot").first).to_be_visible()
+        assert is_narrow(page)
+        assert violations(page) == []

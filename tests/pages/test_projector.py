@@ -1,9 +1,9 @@
 """Tests of /contest?big, the projector's page, while a contest is played at a court."""
 
-import contextlib
 import os
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,7 @@ LEAST_SHARE = 0.028
 is 2 m high."""
 
 
-@contextlib.contextmanager
+@contextmanager
 def contest(folder: Path) -> Iterator[str]:
     """Run a contest of three bots at one court; give the address of its pages."""
     file = folder / "contest.toml"
@@ -156,6 +156,7 @@ def test_every_slide_can_be_read(
     tmp_path: Path,
     built_pages: Path,
     open_page: OpenPage,
+    servers: ExitStack,
     size: ViewportSize,
     locale: str,
     line: str,
@@ -169,21 +170,21 @@ def test_every_slide_can_be_read(
     told = Announced(id="f0", number=0, at_ms=0, text=line) if line else None
     kinds: set[str] = set()
     write_pages(tmp_path)
-    with served(tmp_path) as url:
-        page = open_page(viewport=size, locale=locale)
-        page.clock.install()
-        for number, (_, event) in enumerate(sheets()):
-            *teams, last = pictured(event.contest.teams, tmp_path)
-            left = msgspec.structs.replace(last, withdrawn=True, substitute=teams[0].name)
-            shown = msgspec.structs.replace(event.contest, announced=told, teams=(*teams, left))
-            made = encode(sheet(name, shown, expected(event.contest)))
-            new = tmp_path / "new.json"
-            new.write_bytes(long_teams(made) if name == LONG_NAME else made)
-            # The server of plain files tells versions apart by their second.
-            os.utime(new, (number, number))
-            new.replace(tmp_path / "contest.json")  # at once: the page may be reading it
-            page.goto(f"{url}?big")
-            kinds |= {*show_all(page)}
+    url = servers.enter_context(served(tmp_path))
+    page = open_page(viewport=size, locale=locale)
+    page.clock.install()
+    for number, (_, event) in enumerate(sheets()):
+        *teams, last = pictured(event.contest.teams, tmp_path)
+        left = msgspec.structs.replace(last, withdrawn=True, substitute=teams[0].name)
+        shown = msgspec.structs.replace(event.contest, announced=told, teams=(*teams, left))
+        made = encode(sheet(name, shown, expected(event.contest)))
+        new = tmp_path / "new.json"
+        new.write_bytes(long_teams(made) if name == LONG_NAME else made)
+        # The server of plain files tells versions apart by their second.
+        os.utime(new, (number, number))
+        new.replace(tmp_path / "contest.json")  # at once: the page may be reading it
+        page.goto(f"{url}?big")
+        kinds |= {*show_all(page)}
     assert kinds == {"entered", "now", "tables", "bracket", "ratings", "podium"}
 
 

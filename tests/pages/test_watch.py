@@ -106,10 +106,12 @@ def test_a_match_from_the_lobby_to_the_next(venue: Venue, open_page: OpenPage) -
     show.sees(".result", "Decided by the referee")
     show.sees(".result .side.won", "Bees")
     show.sees(".result .next", "The referee opens the next match")
+    silences = show.find(".panel .log li[data-kind=silent]")
+    before = silences.count()  # on a busy machine a seat may fall silent in play
     left.close()
     referee.wait(lambda: referee.frame.seats[0].flags & SeatFlag.SILENT)
-    for news in (".panel .log li[data-kind=silent]", ".third[data-kind=silent]"):
-        assert show.find(news).count() == 0, "the match is over: it is no news"
+    assert silences.count() == before, "the match is over: it is no news"
+    assert show.find(".third[data-kind=silent]").count() == 0
     show.page.get_by_role("button", name="Look at the field").click()
     show.misses(".result")
     assert "18 : 18" in show.page.title()
