@@ -59,7 +59,7 @@ class Console:
 
         A page asks what stands in its way: a gateway that came back meanwhile answers 426.
         """
-        self.expect("WebSocket|ERR_CONNECTION|status of 426")
+        self.expect("WebSocket|ERR_CONNECTION|ERR_INTERNET_DISCONNECTED|status of 426")
 
     def watch(self, page: Page) -> None:
         """Collect the errors of a page."""
