@@ -3,7 +3,6 @@
 import signal
 import socket
 import threading
-import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from fractions import Fraction
@@ -16,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lacoc_process import Lacoc, environment
+from page_client import PageClient
 from ports import free_port
 from show import decide, playing
 from venue import Venue
@@ -28,6 +28,7 @@ from lacoc_client.film.live.sender import LivePicture, Sender
 from lacoc_client.film.live.sending import SOUND_HZ, NotSent, Part, SendingProcess
 from lacoc_client.film.live.target import Target, target
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase
 
 SIZE, FPS = (320, 180), 10
@@ -240,6 +241,13 @@ def pictures(container: Any) -> Iterator[tuple[float, np.ndarray]]:
         yield float(frame.time), frame.to_ndarray(format="rgb24")
 
 
+def play_on(referee: PageClient, seconds: float) -> None:
+    """Wait until the match has gone on for some time, so that a stream has pictures of it."""
+    assert referee.frame is not None
+    end = referee.frame.beat + round(seconds * BEATS_PER_S)
+    referee.wait(lambda: referee.frame is not None and referee.frame.beat > end)
+
+
 @pytest.mark.long(minutes=1)
 @pytest.mark.slow
 def test_a_match_is_streamed_into_a_file(venue: Venue, tmp_path: Path) -> None:
@@ -251,9 +259,9 @@ def test_a_match_is_streamed_into_a_file(venue: Venue, tmp_path: Path) -> None:
         running = streaming(venue, str(out), stack)
         until(lambda: out.exists() and out.stat().st_size > 10_000, 3 * LIMIT_S)
         referee = playing(venue)
-        time.sleep(1)
+        play_on(referee, 1)
         decide(referee, "for the test", type="adjust", seat="left", points=70)
-        time.sleep(3)
+        play_on(referee, 3)
         running.send_signal(signal.SIGINT)
         assert running.wait(LIMIT_S) == 0
     with av.open(str(out)) as container:

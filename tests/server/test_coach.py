@@ -192,7 +192,7 @@ def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_p
 
 
 def test_a_table_that_makes_no_key_is_told(tmp_path: Path) -> None:
-    """With three postures there is no key of level B: the message names the missing rows."""
+    """Without posture 4 there is no key of level B: the message names the rows of key 2."""
     text = SAMPLE.read_text(encoding="utf-8").replace("Posture\t9", "Posture\t4")
     few = tmp_path / SAMPLE.name
     few.write_text(re.sub(r"^[4-9] Key.*\n", "", text, flags=re.MULTILINE))

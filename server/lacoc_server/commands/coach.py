@@ -2,7 +2,7 @@
 
 import signal
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any
@@ -287,13 +287,6 @@ def _repaired(one: Repaired, goal: Goal) -> Phrase:
 
 
 def _as_json(reply: CoachReply) -> dict[str, Any]:
-    before, after = (
-        {"score": score, **{name: figures[name] for name in ("speed_mm_s", "drift_deg_s")}}
-        for score, figures in (
-            (reply.score_before, reply.before),
-            (reply.score_after, reply.after),
-        )
-    )
     return {
         "key": reply.key,
         "matters": [{**asdict(one.cell), "up": one.up, "down": one.down} for one in reply.matters],
@@ -306,9 +299,17 @@ def _as_json(reply: CoachReply) -> dict[str, Any]:
             {**asdict(one.cell), "from_deg": one.from_deg, "to_deg": one.to_deg}
             for one in reply.changes
         ],
-        "before": before,
-        "after": after,
+        "before": _score_and_speeds(reply.score_before, reply.before),
+        "after": _score_and_speeds(reply.score_after, reply.after),
         "upright": reply.after["upright"],
         "belly_share": reply.after["belly_share"],
         "trials": reply.trials,
+    }
+
+
+def _score_and_speeds(score: float, figures: Mapping[str, Any]) -> dict[str, float]:
+    return {
+        "score": score,
+        "speed_mm_s": figures["speed_mm_s"],
+        "drift_deg_s": figures["drift_deg_s"],
     }

@@ -130,9 +130,9 @@ def play_live(
             sealing = Sealing(secrets.standby)
             stack.enter_context(Lookout(tenure, sealing))
             tenure.check()
-        closes_ms = where.contest.closes_ms
-        entering = entering or closes_ms > time.time_ns() // 1_000_000
-        prepare(where, store, entering=entering)
+        draw_from_ms = where.contest.closes_ms or (None if entering else 0)
+        is_open = draw_from_ms is None or draw_from_ms > time.time_ns() // 1_000_000
+        prepare(where, store, entering=entering or is_open)
         logs = stack.enter_context(Scratch("contest"))
         run_here = partial(_run_here, where, logs, speed, tell)
         addresses = {name: court.elsewhere for name, court in where.contest.courts.items()}
@@ -142,7 +142,6 @@ def play_live(
             for name in filter(addresses.get, addresses)
         ]
         rest_ms = round(1000 * where.contest.least_rest_s)
-        draw_from_ms = (closes_ms or None) if entering else 0
         stage, open_matches = where.open_stage, None
         if stage is not None:
             open_matches = OpenMatches(stage, secrets.seat, tell)
@@ -199,7 +198,7 @@ def play_live(
             for name in addresses
         }
         opened(Opened(url, addresses, link("office", secrets.organiser), code.value, seats))
-        if entering and where.plans and not office.contest.closed:
+        if is_open and where.plans and not office.contest.closed:
             until = where.contest.entries_close if draw_from_ms else None
             tell(say("contest.entries-open", time=until.isoformat() if until else None))
         over_s = math.inf  # when the contest was over, as far as is known
