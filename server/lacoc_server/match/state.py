@@ -270,7 +270,7 @@ class MatchState:
             self._result_changed = True
 
     def build(self) -> None:
-        """Put the robots of all seats on the field, with their drives."""
+        """Put the robots of all seats on the field, and give each seat the drive of its robot."""
         self.staging.build(self.seats)
         self.begin_drives()
         self.sheet_changed()

@@ -1,4 +1,4 @@
-"""Finds games, robots, bots and commands of third parties, by entry point or by folder."""
+"""Finds what third parties add, by entry point; a game or a robot also by its folder."""
 
 import functools
 import hashlib

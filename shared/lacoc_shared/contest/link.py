@@ -1,6 +1,6 @@
 """The link of an event: the address of the pages, the page that it opens, and a token. Pure.
 
-Browsers never send the part after `#`, so no server on the way sees the token.
+A browser opens a page without sending the part after `#`; the page then sends the token.
 """
 
 import re

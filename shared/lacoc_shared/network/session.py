@@ -82,7 +82,7 @@ class Mail(NamedTuple):
 
 
 class Mailbox:
-    """Keeps the newest messages of a subscription until its reader takes them, or waits for one."""
+    """Keeps the newest messages of a subscription for its reader, who takes or awaits them."""
 
     def __init__(self, depth: int, notify: Callable[[], None] | None = None) -> None:
         self._mails: deque[Mail] = deque(maxlen=depth)

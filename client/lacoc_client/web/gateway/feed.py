@@ -108,7 +108,7 @@ class CourtFeed:
         return self.session
 
     def trip_ms(self) -> float | None:
-        """Return how long the court's newest answer took [ms], and start the next measurement.
+        """Return how long the court's newest answer took [ms], and measure again if it is time.
 
         None: nothing was measured yet, or the court does not answer.
         """

@@ -97,7 +97,7 @@ class SharedTable:
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table without a bad cell; None: there was none, or nobody has changed it."""
+        """The newest table without a bad cell; None: there was none, or nobody ever changed it."""
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:
