@@ -22,7 +22,7 @@ _RULES = ("start", "step", "board", "score", "over", "winner", "set")
 
 
 class ArenaCode(NamedTuple):
-    """The name and the folder of an arena's code, for error messages."""
+    """The name of an arena, and the folder of its code, for error messages about the code."""
 
     arena: str
     folder: str

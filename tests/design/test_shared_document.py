@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from page_table import PageTable
 from pycrdt import Array, Doc, Map
 
+from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.tables import document as documents
@@ -403,6 +404,33 @@ def test_two_pages_with_one_number_do_not_hide_each_others_edits() -> None:
     run_async(edit)
 
 
+def test_an_edit_that_shows_nothing_holds_back_no_later_one() -> None:
+    """A page that lacks one edit of another page shows none of that page's later edits."""
+
+    async def keep(state: bytes, epoch: str) -> None:
+        pass
+
+    async def edit() -> None:
+        table = SharedTable("", keep)
+        sockets = [Wire() for _ in range(2)]
+        one, other = map(Viewer, sockets)
+        for viewer in (one, other):
+            table.add(viewer, "")
+        await table.take(one, told(PageTable(table.opened()), dict(standing())))
+        first, second = (PageTable(table.opened()) for _ in range(2))
+        same = told(first, {"p6/0.0/0": 0.0})  # as after undo: the number that was there
+        for update in (same, same, told(first, {"p6/0.0/1": 2.0})):
+            await table.take(one, update)
+        news = [msgspec.msgpack.decode(wire.opened(framed)[1]) for framed in sockets[1].written]
+        updates = [body["update"] for body in news if "update" in body][1:]
+        assert len(updates) == 2, "what comes again is passed on once"
+        for update in updates:
+            second.take(update)
+        assert second.entries["p6/0.0/1"] == 2.0
+
+    run_async(edit)
+
+
 def test_the_newest_whole_table_is_the_draft() -> None:
     """A cell without an angle leaves the draft as it was just before."""
 
@@ -433,16 +461,16 @@ def test_pages_hear_of_places_at_a_bounded_rate() -> None:
 
     async def move() -> None:
         table = SharedTable("", keep)
-        wires = [Wire() for _ in range(5)]
-        viewers = [Viewer(wire) for wire in wires]
+        sockets = [Wire() for _ in range(5)]
+        viewers = [Viewer(socket) for socket in sockets]
         for viewer in viewers:
             table.add(viewer, "")
         for row in range(200):
             table.move(viewers[0], row, 0, None)
         await asyncio.sleep(0.2)
-        for wire in wires:
-            assert len(wire.written) <= 5
-        assert wires[1].written[-1].count(b"row") == 5
-        assert bytes([0xCC, 199]) in wires[1].written[-1]
+        for socket in sockets:
+            assert len(socket.written) <= 5
+        assert sockets[1].written[-1].count(b"row") == 5
+        assert bytes([0xCC, 199]) in sockets[1].written[-1]
 
     run_async(move)

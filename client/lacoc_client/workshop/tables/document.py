@@ -48,7 +48,10 @@ class TableDocument:
         return self._entries
 
     def merge(self, update: bytes, may_write: Callable[[int], bool] = lambda _: True) -> bool:
-        """Merge an update that a page sent; return whether it has changed an entry.
+        """Merge an update that a page sent; return whether it brought an edit that was not here.
+
+        Such an edit may change no entry, as when two pages write into one cell. The other pages
+        need it all the same: without it they can't merge the page's later edits.
 
         Args:
             update: the update, as Yjs writes it.
@@ -84,7 +87,7 @@ class TableDocument:
             if type(error).__name__ == "PanicException":  # the library is written in Rust
                 raise UserError(say("tables.unreadable")) from None
             raise
-        return self._entries != entries
+        return self.state != before
 
     @property
     def is_long(self) -> bool:

@@ -161,14 +161,14 @@ class SharedTable:
         self._allowance.take(cost, now_s)
         before = self._document.entries
         try:
-            changes = self._document.merge(told.update, lambda writer: self._is_of(writer, viewer))
+            is_new = self._document.merge(told.update, lambda writer: self._is_of(writer, viewer))
         except UserError:
             self._allowance.take(_REFUSED_COST * cost, now_s)
             raise
         self._seq += 1
         seq = self._seq
         self.is_touched = self.is_touched or not told.begins or bool(told.cells)
-        if changes:
+        if is_new:
             self._keep_draft(before)
             self._tell_others(viewer, {"update": told.update})
         self._find_clashes(viewer, told)

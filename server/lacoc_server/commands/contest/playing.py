@@ -155,9 +155,9 @@ def run(
     'elsewhere' in the contest file run on other machines ('lacoc contest courts').
 
     With --headless there is no network: bots play as fast as the machine can. A game is known by
-    the files of both teams, the rules and the software. If its record is there, it is not played
-    again. If one entry changes, a new contest with the same folder of records plays only the games
-    of that team.
+    all that decides it, such as the files of both teams, the rules and the software. If its record
+    is there, it is not played again. After a change of one entry, start a new contest with the same
+    folder of records: it plays only the games that the change decides.
     """
     from lacoc_server.contest.acts import organiser
     from lacoc_server.contest.headless.pool import Pool, interrupted_by_signals
