@@ -14,6 +14,7 @@ import sys
 import tempfile
 import urllib.request
 import venv
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 _LIMIT_S = 300  # longer than any command needs, unless it hangs
@@ -143,10 +144,18 @@ def main(dist: Path) -> None:
     """Try the one wheel and the one source archive in the folder `dist`."""
     (wheel,) = dist.glob("*.whl")
     (source,) = dist.glob("*.tar.gz")
-    with tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder:
-        try_contestant(Environment(Path(folder, "contestant"), wheel), wheel)
+    with (
+        tempfile.TemporaryDirectory(prefix="lacoc smoke ") as folder,
+        ThreadPoolExecutor() as aside,
+    ):
+        # Both at once: an installation mostly waits for the network.
+        installed = [
+            aside.submit(Environment, Path(folder, "contestant"), wheel),
+            aside.submit(Environment, Path(folder, "court"), source, "[server]"),
+        ]
+        try_contestant(installed[0].result(), wheel)
         print(f"{wheel.name}: a contestant's machine works")
-        try_court(Environment(Path(folder, "court"), source, "[server]"))
+        try_court(installed[1].result())
         print(f"{source.name}: a court's machine works")
 
 
