@@ -92,7 +92,7 @@ class GameEvent(msgspec.Struct, frozen=True, kw_only=True):
     marker: str
     """The marker that was claimed; with `seat` it names the claim."""
     also: tuple[str, ...] = ()
-    """Further markers that changed together with the claimed one, such as the runs of rules 5."""
+    """Further markers that changed with the claimed one, such as the runs of discs in rules 5."""
     points: int = 0
     """Points that the seat gains."""
     said: Phrase

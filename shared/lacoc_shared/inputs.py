@@ -86,7 +86,7 @@ class Decide(_Input, frozen=True, tag="decide"):
 
 
 class Advice(_Input, frozen=True, tag="advice"):
-    """The court advises to play the match again, because it ran too badly, or no longer does so."""
+    """The court advises to play the match again, as it ran too badly, or takes this advice back."""
 
     reasons: tuple[Phrase | str, ...]
     """Why the match should be played again (`health.*`; a text in a record of protocol 1). Empty:

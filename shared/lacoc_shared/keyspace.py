@@ -68,7 +68,7 @@ class KeySpace:
 
     @property
     def event(self) -> str:
-        """Key expression of events; a query to it returns all events of the match.
+        """Key expression of events; a query to it returns the newest `EVENTS_LISTED` of the match.
 
         Events are numbered, so that a client sees if one was lost, and asks for it.
         """

@@ -1,9 +1,10 @@
 """Hashes of tokens, and the seals that prove from which seat a command comes.
 
-A seat's token is sent only with a join, and a referee's token with each decision. After a join
-the session's secret, 16 bytes from the court, seals every command and request of the seat: a
-keyed BLAKE2b of 8 bytes over its key expression and its numbers (session, sequence number and so
-on) as text, joined by spaces.
+A seat's token is sent with a join and to ask where a team plays, a referee's token with each
+request of the referee. After a join the session's secret, 16 bytes from the court, seals every
+command and request of the seat. A seal is a keyed BLAKE2b of 8 bytes over a text, whose parts are
+joined by spaces: the key expression of the message, the number of the session, the sequence number,
+and the other numbers of the message.
 """
 
 import hashlib

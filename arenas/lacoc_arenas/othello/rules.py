@@ -4,8 +4,9 @@ Column 0 has the smallest x, row 0 the smallest y; a disc is named "c2r3" by col
 index is 6 * row + column. A robot's *last cell* is the disc it entered most recently; walking off a
 disc does not change it.
 
-If a referee strikes out a claim (rules 4.1), the disc and its runs keep their colours. The disc
-still becomes the robot's last cell, because the robot has walked there.
+If a referee strikes out a claim (rules 4.1), the disc keeps its colour, and so do the runs (lines
+of discs) that would flip with it. The disc still becomes the robot's last cell, because the robot
+has walked there.
 
 All flips of one tick happen at the same time. Their events are listed in the order of the discs'
 indices, which does not favour a seat.

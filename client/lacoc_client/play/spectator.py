@@ -74,7 +74,7 @@ class Spectator:
 
     @property
     def events(self) -> tuple[Event, ...]:
-        """All events of the match so far."""
+        """The events of the match so far; of very many the newest (`EVENTS_LISTED`)."""
         return tuple(self._view.log)
 
     def poll(self) -> Frame | None:
@@ -131,7 +131,7 @@ class Spectator:
         return events
 
     def silent_s(self, now_s: float) -> float:
-        """Return for how long no frame has come [s]; a court sends a frame every 20 ms, always."""
+        """Return for how long no frame has come [s]; a court sends one each 20 ms, in every phase."""
         return max(0.0, now_s - self.frame_s)
 
     def scene(self) -> Scene:

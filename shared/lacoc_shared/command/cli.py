@@ -1,12 +1,12 @@
 """The command `lacoc`.
 
-Subcommands are the entries of an entry-point group. Each is imported only when it is called;
-`listing` has the help's lines about those of LACOC. So a contestant's machine needs no package that
+Subcommands are the entries of an entry-point group. Those of LACOC are imported only when they are
+called; `listing` has the help's lines about them. So a contestant's machine needs no package that
 only a court needs, a third party adds a command by installing a package, and `lacoc --version` is
 quick.
 
 An entry names a `typer.Typer`. With one command in it, the entry becomes that command; with
-several, a group of commands. Commands raise `UserError` and `FileRefused`; only this module turns
+several, a group of commands. Commands raise `UserError` and `FileRefused`; this module turns
 them into words on the screen and an exit code.
 """
 
@@ -107,7 +107,7 @@ class LazyGroup(TyperGroup):
 
 
 def lazy_group(entry_points: str, help: str, listing: Listing | None = None) -> typer.Typer:
-    """Make a group of commands that are imported only when they are called.
+    """Make a group of commands; those of LACOC are imported only when they are called.
 
     Args:
         entry_points: name of the entry-point group; each entry names a `typer.Typer`.

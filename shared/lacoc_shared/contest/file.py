@@ -66,8 +66,8 @@ class ContestFile(msgspec.Struct, frozen=True, kw_only=True):
     least_rest_s: float = 0.0
     """Shortest time between two matches of a team."""
     entries_close: datetime | None = None
-    """Time after which no team can enter, and files change only with a reason; None: entries close
-    with the first draw."""
+    """Time after which teams enter, and change files, only if the organiser gives a reason; None:
+    entries close with the first draw."""
     secrets: Secrets
     """All tokens. They are in a file beside the contest file, never in it."""
 

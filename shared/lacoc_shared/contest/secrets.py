@@ -1,6 +1,6 @@
 """The secrets of a contest: all its tokens, in a file beside the contest file.
 
-The contest file itself contains no secret. Each token is made when it is first needed. If an
+The contest file itself contains no secret. Most tokens are made when they are first needed. If an
 organiser removes or replaces a token in the file, the old token is not valid any more.
 """
 

@@ -50,7 +50,7 @@ class Row:
 
 
 def posture_cells(table: PostureTable, legs: Sequence[str]) -> list[list[str | float]]:
-    """Return the cells of a file of postures (level A): their number, each posture [deg], a legend.
+    """Return the cells of a file of postures (level A): how many, each posture [deg], a legend.
 
     Raises:
         ValueError: if the table is not for a robot with these legs.

@@ -62,7 +62,7 @@ class SeatFrame(msgspec.Struct, frozen=True, array_like=True):
 class Frame(msgspec.Struct, frozen=True, array_like=True):
     """The whole match at a beat.
 
-    One frame is enough to show it, also to somebody who comes late.
+    With sheet and scene, one frame is enough to show the match, also to somebody who comes late.
     """
 
     match: int
@@ -129,8 +129,8 @@ class Join(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     postures: SentFile | None = None
     """A Loco-data file."""
     locomotion: SentFile | None = None
-    """A LocoTra-data file. If no file is sent, the files stay that the seat has, if the team of
-    this name has the seat; else the contest's robot and its sample gait are used."""
+    """A LocoTra-data file. If a join has no file at all: the files of the seat stay if the
+    team of this name has it; otherwise the contest's robot and this robot's sample are used."""
 
 
 class Joined(msgspec.Struct, frozen=True, kw_only=True):
@@ -445,8 +445,8 @@ class SeatHealth(msgspec.Struct, frozen=True, kw_only=True):
     """Time since the seat's join or its last valid command [ms]; None: there was neither."""
     commands_hz: float
     refused: dict[str, int]
-    """Number of refused messages by reason, a name of `count.*` such as "bad-seal", since another
-    team had the seat."""
+    """Number of refused messages by reason, a name of `count.*` such as "bad-seal"; it begins again
+    at 0 when another team takes the seat."""
     round_trip_p50_ms: float | None = None
     """Time from a frame to the beat that takes the seat's answer to it, by the court's clock: the
     median of the last 10 s [ms]; None: not known."""
@@ -512,11 +512,12 @@ class Health(msgspec.Struct, frozen=True, kw_only=True):
     """Duration of the beats of the last seconds at 20 ms each, divided by their wall time; 1 is
     real time."""
     slow_beats: int
-    """Number of beats that began more than 20 ms late."""
+    """Number of beats since the court's start that began more than 20 ms late."""
     worst_late_ms: float
     seats: tuple[SeatHealth, ...]
     dropped: dict[str, int]
-    """Number of refused messages that belong to no seat, by reason: a name of `count.*`."""
+    """Number of messages that belong to no seat and were refused since the court's start, by
+    reason: a name of `count.*`."""
     decisions: dict[str, Phrase | None]
     """Every decision by name: None if it is legal now, else why not (`why.*`)."""
     verdict: HealthVerdict | None = None

@@ -259,7 +259,7 @@ class Rule(DeskRequest, frozen=True, kw_only=True, tag="rule"):
 
 
 class Move(DeskRequest, frozen=True, kw_only=True, tag="move"):
-    """Plan a match for another court or time; of several such plans only the newest counts."""
+    """Plan a match for another court or time; of several plans for a match the newest counts."""
 
     pairing: _Name
     court: _Name = ""
@@ -464,7 +464,7 @@ class OfficeView(msgspec.Struct, frozen=True, kw_only=True):
     teams: tuple[TeamRow, ...]
     courts: tuple[CourtRow, ...]
     slots: tuple[Slot, ...]
-    """The matches to come, sorted by court and then by time."""
+    """The matches that are played now or later, sorted by court and then by time."""
     day: DayState
     shift: ShiftState | None
     """The newest shift, as long as it still changes something; None: there is none."""

@@ -26,7 +26,7 @@ def pack(segments: Sequence[Path], out: Path) -> None:
 
     The file gets its name when it is complete and on the disk. If a file of this name exists
     already, an earlier packing was interrupted; then the file is only checked and the segments are
-    removed. The segments are removed only if the file, read again, has every message in them.
+    removed. The segments are removed only if the file, read again, has all of their messages.
     Meanwhile all segments are locked.
 
     Args:

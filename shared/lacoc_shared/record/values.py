@@ -15,8 +15,8 @@ _FIXED: Mapping[int, int] = {
     0xD7: 9,
     0xD8: 17,
 }
-"""By head: how many bytes follow it, if always as many do. For a list or map these are its
-length."""
+"""By first byte of a value: how many bytes follow it, if this number is fixed. For a list or map
+these bytes are its length."""
 _SIZED: Mapping[int, tuple[int, int]] = {
     **dict.fromkeys((0xC4, 0xD9), (1, 0)),
     **dict.fromkeys((0xC5, 0xDA), (2, 0)),
@@ -25,14 +25,15 @@ _SIZED: Mapping[int, tuple[int, int]] = {
     0xC8: (2, 1),
     0xC9: (4, 1),
 }
-"""By head of a text, of bytes and of an extension: size of its length [bytes], and what follows
-besides so many bytes."""
+"""By first byte of a text, of bytes or of an extension: how many bytes its length takes, and how
+many bytes follow in addition to this length."""
 
 
 def lists_and_maps(data: bytes, most: float) -> int:
-    """Return how many lists and maps are in msgpack; at least as many as there are.
+    """Return how many lists and maps are in msgpack; the number may be too large, not too small.
 
-    If few bytes could begin one, all of them are counted. The count ends above `most`.
+    If only few bytes could begin a list or map, each of them counts as one. Otherwise the values
+    are counted one by one, until there are more than `most`.
     """
     could_begin = len(data) - len(data.translate(None, _LISTS_AND_MAPS))
     return could_begin if could_begin <= _FEW else _counted(data, most)

@@ -51,8 +51,8 @@ class Sender:
         self.left_out = 0
         """Number of pictures left out, because the encoder or the server was too slow, or gone."""
         self.failed: Phrase | str | None = None
-        """Why the file can't be written, or why FFmpeg can't reach such a server; the stream has
-        ended then. None: there was no such error."""
+        """Why the file can't be written, or that FFmpeg lacks the server's protocol; the stream
+        has ended then. None: there was no such error."""
         self._is_away = False
         self._thread.start()
 
@@ -115,7 +115,7 @@ class Sender:
     def _pass(self, seconds: float) -> None:
         """Drop the pictures in the queue and those of the next `seconds`, with their sounds.
 
-        The end stops it.
+        Return earlier if the stream is told to end.
         """
         end_s = time.monotonic() + seconds
         while time.monotonic() < end_s and not self._ending.is_set():

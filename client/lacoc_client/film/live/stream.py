@@ -78,7 +78,7 @@ class _Streaming:
 
         Raises:
             UserError: if there is no browser, the target is a file that can't be written, or
-                FFmpeg can't reach such a server.
+                FFmpeg lacks the protocol of the address.
         """
         while not stopping():
             with window(self._look) as (page, paced):
@@ -176,8 +176,8 @@ def stream(
         report: called every 10 s.
 
     Raises:
-        UserError: if there is no browser, a file can't be written, or FFmpeg can't reach such a
-            server.
+        UserError: if there is no browser, a file can't be written, or FFmpeg lacks the protocol of
+            the address.
     """
     running = _Streaming(source, target, look, fps, tell)
     try:

@@ -8,7 +8,7 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _SILENT_US = "10000000"
-"""A connection over which nothing goes for this long has failed, for FFmpeg [us]. Not by RTMP."""
+"""FFmpeg gives up a connection over which nothing passes for this long [us]; not so with RTMP."""
 _LIST = "index.m3u8"
 _FORMATS = {
     ".mp4": ("mp4", {"movflags": "frag_keyframe+empty_moov+default_base_moof"}),

@@ -23,7 +23,7 @@ _EMPTY_MOST_S = 20.0
 """If the court on air has had no play for this long, even the last cut of the minute is used to
 show a court with play [s]."""
 _KNOWN_S = 180.0
-"""Moments and cuts are valued by comparison with the moments of this last time [s]."""
+"""Moments and cuts are valued by comparison with the moments of this many last seconds [s]."""
 
 Why = Moving | Literal["first", "played", "gone"]
 """Why a court is on air: the kind of a moment, or
@@ -46,9 +46,9 @@ class Director:
     """Chooses which court is on air, from a look at all courts several times a second.
 
     All courts are shown `ahead_s` later than they are played. So the director knows what comes, and
-    cuts to a moment before it happens. It never cuts away from the last 30 s of a close match nor
-    from a fresh result, and never cuts more than four times in any minute. The first two rules do
-    not hold for a court that has vanished. A second picture shows the best moments at other courts.
+    can cut to a moment before it happens. It never cuts away from the last 30 s of a close match
+    nor from a fresh result, unless the court has vanished. It never cuts more than four times in
+    any minute. A second picture shows the best moments at other courts.
 
     Args:
         ahead_s: how much later everything is shown than it is played [s].

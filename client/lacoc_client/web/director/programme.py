@@ -101,7 +101,10 @@ class Programme:
         self._second.remove(viewer)
 
     def seen_by(self, viewer: Viewer) -> Audience | None:
-        """Return the pages that see the same court as a page; None: it follows no picture here."""
+        """Return the pages to which the director shows the same court as to this page.
+
+        None: this page does not follow the director.
+        """
         for channel in (self._first, self._second):
             if channel.has(viewer):
                 return self.audience(channel.court)

@@ -77,7 +77,7 @@ class Crowd:
             self.pass_second()
 
     def say(self, audience: Audience, watching: int, *, again: bool = False) -> None:
-        """Tell some pages how often each cheer came in this second, and how many pages watch.
+        """Tell some pages how often each symbol came in this second, and how many pages watch.
 
         Args:
             audience: the pages.

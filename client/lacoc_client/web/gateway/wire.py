@@ -1,8 +1,8 @@
 """Messages between the gateway and a page (docs/gateway.md lists them).
 
-A message to a page is one byte for its kind, then the payload; a court's messages are passed on
-unchanged, only before a scene stands its hash. A message from a page is a msgpack map with an `id`
-and the kind of request, `do`; the gateway answers each with a reply.
+A message to a page is one byte for its kind, then the payload. A court's messages are passed on
+unchanged, except that the gateway puts the hash of a scene before the scene. A message from a page
+is a msgpack map with an `id` and the kind of request, `do`; the gateway answers each with a reply.
 """
 
 from enum import IntEnum
@@ -83,7 +83,10 @@ class Ask(msgspec.Struct, frozen=True, kw_only=True, tag_field="do"):
 
 
 class Watch(Ask, frozen=True, kw_only=True, tag="watch"):
-    """Watch a court, or what the director shows: the first request, and each that changes this."""
+    """Watch a court, or what the director shows.
+
+    It is a page's first request, and a page sends it again to watch something else.
+    """
 
     court: _Short | None = None
     director: bool = False

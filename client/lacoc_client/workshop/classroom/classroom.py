@@ -286,7 +286,7 @@ class Classroom:
         return await asyncio.wrap_future((await self._store()).evidence())
 
     async def documents(self) -> list[Document]:
-        """Return the tables of students and groups, the students' tokens, the class's settings."""
+        """Return the documents of the class: tables, hashes of students' tokens, and settings."""
         return (await self._store()).documents()
 
     def add_teacher(self, viewer: Viewer) -> None:

@@ -75,8 +75,8 @@ class ClassDoor:
     async def _newcomer(self, hello: requests.Hello, where: str) -> ClassStudent:
         """Check the class code and the nickname; return this student, or make a new one.
 
-        A student who opened a page, did nothing and has no page open is deleted first: perhaps this
-        is the same browser, which lost its connection before it had its token.
+        A student of this nickname who did nothing and has no page open is deleted first: perhaps
+        this is the same browser, which lost its connection before it had its token.
         """
         if not hello.code:
             raise UserError(say("class.enter"))

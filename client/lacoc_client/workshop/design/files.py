@@ -57,8 +57,8 @@ def file_bytes(name: str, content: FileTable | str, before: bytes | None = None)
     Args:
         name: name of the file.
         content: the table, or a robot file's text.
-        before: the file as it is now, of which a table of postures keeps the rest; None: there is
-            none.
+        before: the file as it is now; all of it but the postures is kept if the content is a table
+            of postures. None: there is no file.
 
     Raises:
         FileRefused: with every mistake of the table, or of the workbook to change.

@@ -153,7 +153,7 @@ class EditAsk(Ask, frozen=True, kw_only=True, tag="edit"):
     """Tell the gateway what the student did to the table, as evidence for the phases."""
 
     before: FileTable
-    """The table without this edit. Changes that other people made meanwhile are in both tables."""
+    """The table without this edit. Changes of others meanwhile are in this table and in `table`."""
     table: FileTable
     robot: SentFile | None = None
     sequences: Sequences | None = None

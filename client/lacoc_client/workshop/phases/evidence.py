@@ -133,8 +133,8 @@ class Tried(_EvidenceKind, frozen=True, kw_only=True, tag="tried"):
     version: _Word
     facts: TrialFacts
     rows: tuple[int, ...] = ()
-    """The rows that the measured key used, in order: their digits; or 1, 2 ... in a table of level
-    B."""
+    """The rows that the measured key used, in order: in a table of level A their digits, in a table
+    of level B 1, 2 ..."""
     numbers: tuple[TriedNumber, ...] = ()
     """All numbers in the rows of the pressed keys that differ from the robot's start posture."""
 

@@ -17,8 +17,8 @@ from lacoc_shared.words import say
 STATE_BYTES = 512 << 10
 """Longest state of a document [bytes]; an update that makes it longer is refused."""
 COMPACT_BYTES = 48 << 10
-"""If a state has become longer by this than the table, without earlier edits, was when the document
-was made, a document without earlier edits takes its place [bytes]."""
+"""A document that has grown by more than this [bytes] is replaced by one without earlier edits. The
+growth counts from the size of the table, without earlier edits, when the document was made."""
 
 
 class TableDocument:

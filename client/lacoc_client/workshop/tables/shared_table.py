@@ -87,7 +87,7 @@ class SharedTable:
         self._telling: asyncio.TimerHandle | None = None
         self._told_s = 0.0
         self._draft: Draft | None = None
-        """The last complete table that was computed. This is done when somebody asks for it, and
+        """The last complete table that was computed. It is computed when somebody asks for it, and
         before each change after which the table may be incomplete."""
         self._begin(TableDocument(state), epoch or new_token())
         self.is_touched = bool(state)
@@ -97,7 +97,10 @@ class SharedTable:
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table without a bad cell; None: there was none, or nobody ever changed it."""
+        """The newest table without a bad cell.
+
+        None: nobody ever changed the table, or since the program started it always had a bad cell.
+        """
         return self._newest_draft() if self.is_touched else None
 
     def opened(self) -> dict[str, Any]:

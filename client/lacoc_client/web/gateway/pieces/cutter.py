@@ -29,8 +29,8 @@ class Piece(msgspec.Struct, array_like=True, frozen=True):
 class Cutter:
     """Takes the place of a page's WebSocket, and collects each second's messages into a piece.
 
-    Piece `n` has the messages of second `n` of the run. The bytes of a piece never change. Each run
-    has a random name, so no cache can confuse it with another run.
+    A run begins when the cutter is made: piece `n` has the messages of the run's second `n`. The
+    bytes of a piece never change. Each run has a random name, so no cache can confuse two runs.
 
     Args:
         clock: returns the time [s].

@@ -76,7 +76,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
     def voted(self, member: str, word: str) -> "GroupState":
         """Return the group after a member's vote for a word.
 
-        A word that is new is proposed with it.
+        A vote for a new word also proposes the word.
 
         Raises:
             UserError: if there are too many words already.
@@ -92,7 +92,7 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """The word with the most votes; of several, the first. "": no word has a vote."""
+        """The word with the most votes; of equal ones the oldest. "": no word has a vote."""
         counts = [(self.count(one.word), -at, one.word) for at, one in enumerate(self.words)]
         return max(counts)[2] if counts and max(counts)[0] else ""
 

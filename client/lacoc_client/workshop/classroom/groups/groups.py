@@ -98,11 +98,11 @@ class Groups:
         return {self.states[id_].name: one for id_, one in self._tables.drafts().items()}
 
     async def join(self, student: ClassStudent, name: str) -> None:
-        """Put a student into a group; a new one begins with a copy of the table the student has.
+        """Put a student into a group; a new group begins with a copy of the student's table.
 
         Raises:
-            UserError: if the name is not allowed, too much like that of another group, the group
-                is full, or there are too many groups.
+            UserError: if the name is not allowed, or is too much like that of another group; if the
+                group is full; or if there are too many groups.
         """
         read = read_name(name, _LONGEST_NAME)
         if read is None:

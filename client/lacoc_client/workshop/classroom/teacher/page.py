@@ -146,7 +146,10 @@ class TeacherPage:
         return {"name": TABLES, "data": await asyncio.to_thread(tables_zip, files)}
 
     def _players(self) -> dict[str, SeatFiles]:
-        """Return files by name: of each group, and of each student without one, who has a table."""
+        """Return the files of each group, and of each student who works alone, by name.
+
+        Groups and students without a table are left out.
+        """
         students = [one for one in self._class.students.values() if one.table is one.own]
         drafts = {one.name: one.draft for one in students if one.draft is not None}
         for name, draft in self._class.groups.drafts().items():

@@ -72,8 +72,8 @@ class CheckReply(msgspec.Struct, frozen=True, kw_only=True):
     """The answer to a page that had its table checked (`CheckAsk`)."""
 
     keys: int
-    """Number of keys: in a table of postures, of different sequences that the page sent; else of
-    all keys."""
+    """For a table of locomotion, the number of its keys. For a table of postures, the number of
+    different sequences that the page sent."""
     mistakes: tuple[Mistake, ...] = ()
 
 

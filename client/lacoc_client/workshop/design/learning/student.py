@@ -45,7 +45,10 @@ class Student:
 
     @property
     def draft(self) -> Draft | None:
-        """The newest table without a bad cell; None: there was none, or nobody has changed it."""
+        """The newest table without a bad cell.
+
+        None: nobody ever changed the table, or since the program started it always had a bad cell.
+        """
         return self.table.draft
 
     def open_kept(self) -> None:

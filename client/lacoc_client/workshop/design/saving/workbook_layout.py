@@ -33,8 +33,8 @@ class Layout:
 def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
     """Find the sheet's row of each posture, and a row for each new posture.
 
-    A new posture gets an empty row, that of a removed posture, or one of the legend, which moves
-    down.
+    A new posture gets an empty row, the row of a removed posture, or a row of the legend. The
+    legend then moves down.
 
     Raises:
         UserError: if the postures do not fit into the sheet, or it is for another number of legs.

@@ -37,10 +37,10 @@ class OwnTrial:
 
     tried: Tried
     typed: int
-    """How many numbers were typed and differ by `NUMBER_DEG` from those that were in their cells
-    before."""
+    """How many numbers were typed, and differ by at least `NUMBER_DEG` from the number in the same
+    cell before the first change that counts."""
     made: int
-    """How many numbers were made from typed ones, and differ by `NUMBER_DEG` from those before."""
+    """How many numbers were made from typed ones, and differ as much as `typed` asks for."""
     foreign: int
     """How many numbers are foreign, also those that did not change in this phase."""
 
@@ -128,8 +128,8 @@ class LegNumbers:
     joints: int
     """How many of the leg's three joints were turned by at least `NUMBER_DEG`."""
     postures: int
-    """How many postures of the leg differ by `NUMBER_DEG` from each other and from the first
-    one."""
+    """How many typed postures of the leg differ by `NUMBER_DEG` from each other, and from the leg's
+    posture before the first edit."""
 
 
 def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
