@@ -97,8 +97,8 @@ def _pose(x: float, y: float, z: float, qw: float, qx: float, qy: float, qz: flo
 class Pilot:
     """Chooses keys that bring one robot to a point: to turn, walk, pass the other robot, get free.
 
-    It changes the key only where a sequence ends: half a step does not move the robot forward, and
-    half a turn turns it the wrong way.
+    Except for [x], it changes the key only where a sequence ends: half a step does not move the
+    robot forward, and half a turn turns it the wrong way.
     """
 
     def __init__(self, sheet: Sheet, seat: int, size_m: tuple[float, float]) -> None:

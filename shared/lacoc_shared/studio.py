@@ -329,7 +329,7 @@ class CoachReply(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GaitDifference(msgspec.Struct, frozen=True, kw_only=True):
-    """A visible difference of a gait that was found from the gait of the request."""
+    """A visible difference between a gait that the coach found and the gait of the request."""
 
     way: str
     """What differs: height, lift, stride, width, lean, limp, bob or sway (docs/studio.md 4)."""

@@ -131,7 +131,7 @@ class Spectator:
         return events
 
     def silent_s(self, now_s: float) -> float:
-        """Return for how long no frame has come [s]; a court sends one each 20 ms, in every phase."""
+        """Return for how long no frame has come [s]; a court sends one each 20 ms in each phase."""
         return max(0.0, now_s - self.frame_s)
 
     def scene(self) -> Scene:

@@ -1,4 +1,4 @@
-"""Says with which command missing packages are installed, from where this LACOC came from.
+"""Says which command installs missing packages, from the place where this LACOC came from.
 
 LACOC may not be in an index of packages. Its installation may record that it came from a folder, a
 file or a repository; then its extras are installed from there too. If no place is recorded, or the

@@ -1,8 +1,8 @@
 """The requests of an organiser's and of teams' pages to a contest's office (docs/contest.md 12).
 
-A gateway passes these requests on without reading them: only the office checks their secret. With
-the organiser's key one decides; with the event code a team applies; with its token a team sees and
-changes its own entry.
+A gateway passes these requests on; it only limits how often files are handed in. The office checks
+the secret in a request. The organiser's key, or a token of the staff, lets a page decide. The event
+code lets a team apply. A team's token lets the team see and change its own entry.
 """
 
 from typing import Annotated, Literal
@@ -75,7 +75,7 @@ class Apply(DeskRequest, frozen=True, kw_only=True, tag="apply"):
     team: _Name
     files: TeamFiles
     contact: Annotated[str, msgspec.Meta(max_length=200)] = ""
-    """How to reach the team; only the organiser reads it."""
+    """How to reach the team; only the organiser and the staff can read it."""
     club: _Name = ""
     """The team's school or club; a stage may keep teams of one club apart in its draw."""
 

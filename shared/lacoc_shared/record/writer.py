@@ -1,4 +1,4 @@
-"""Writes the record of a running match so that a kill of the court loses nothing.
+"""Writes the record of a running match so that a kill of the court loses nothing written.
 
 The file is plain MCAP (https://mcap.dev/spec), unchunked and unbuffered: each message is one system
 call. `mcap.writer` would put a buffer before the file. A kill would lose this buffer, and filling

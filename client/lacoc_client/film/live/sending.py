@@ -1,7 +1,8 @@
 """The process that encodes a stream and sends it.
 
-FFmpeg holds Python's lock while a video server is asked or takes data. A server that says nothing
-for a long time would stop every thread, so it must only stop this process, which is ended then.
+FFmpeg holds Python's lock while a video server is asked or takes data. While a server says nothing,
+every thread of the process stands still. So this process does nothing else, and it is ended if that
+takes too long.
 """
 
 import signal

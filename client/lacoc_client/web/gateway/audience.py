@@ -35,7 +35,7 @@ class Audience:
         self._viewers[viewer] = None
 
     def tap(self, listener: Listener) -> None:
-        """Add a listener; it receives what pages get from the court, but does not count as one."""
+        """Add a listener: it receives what pages get from the court, but it counts as no page."""
         self._listeners.append(listener)
 
     def remove(self, viewer: Viewer) -> None:

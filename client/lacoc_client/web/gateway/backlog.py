@@ -32,7 +32,7 @@ class _ProgrammeHead(msgspec.Struct):
 
 
 class Backlog:
-    """Keeps, of all messages about a court, those that a page needs which begins to watch it."""
+    """Keeps those messages about a court that a page needs when it begins to watch."""
 
     def __init__(self) -> None:
         self._newest: dict[MessageKind, bytes] = {}

@@ -11,8 +11,8 @@ from starlette.responses import FileResponse, Response
 from lacoc_client.web.gateway.files import PageFile, page_file
 
 FOR_EVER = "public, max-age=31536000, immutable"
-"""For things that never change under their name: records, and assets, whose names contain their
-hash."""
+"""For things that never change under their name: finished records, pieces of a match, pictures of
+teams, and assets, whose names contain their hash."""
 ASK_AGAIN = "no-cache"
 """For things that change: the browser asks each time whether its copy is still the newest."""
 A_SECOND = "public, max-age=1"

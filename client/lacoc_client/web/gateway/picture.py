@@ -59,7 +59,7 @@ class _FrameHead(msgspec.Struct, array_like=True):
 
 
 class CourtPicture:
-    """The newest messages of a court: all that a page needs that begins to watch.
+    """The newest messages of a court: all that a page needs when it begins to watch.
 
     Each `take_...` notes a message of the court. It returns the bytes to send to pages, or None if
     they need not be sent. It raises `BadMessage` if the message can't be decoded; then nothing

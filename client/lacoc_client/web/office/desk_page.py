@@ -44,7 +44,7 @@ class LinkAsk(Ask, frozen=True, kw_only=True, tag="link"):
 
 
 class LinksAsk(Ask, frozen=True, kw_only=True, tag="links"):
-    """Ask for the links of `ContestLinks`; only who shows the organiser's key gets them."""
+    """Ask for the links of `ContestLinks`; only the organiser and the staff get them."""
 
     secret: Annotated[str, msgspec.Meta(max_length=200)]
     team: Annotated[str, msgspec.Meta(max_length=64)] = ""

@@ -173,7 +173,10 @@ class DesignPage:
             self._host.learned(learner.student)
 
     async def _sample_trial(self, asked: requests.TrialAsk) -> TrialReply | None:
-        """Repeat a trial with the sample gait; None: it had no table, or no sample has its legs."""
+        """Repeat a trial with the sample gait.
+
+        None: the trial was of the sample gait itself, or no sample has the table's number of legs.
+        """
         table = (await asyncio.to_thread(self._host.sample)).table
         if table is None or asked.table is None or table.legs != asked.table.legs:
             return None

@@ -1,6 +1,6 @@
 """The kinds of evidence that students produce; the phases decide from it which tasks are done.
 
-Evidence is only added, never changed.
+Evidence is never changed; it is deleted only when everything about a student is deleted.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

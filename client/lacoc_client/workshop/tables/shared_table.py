@@ -131,7 +131,7 @@ class SharedTable:
             self._tell_people()
 
     def end(self) -> None:
-        """Make a table empty again that nobody has changed, after its last page was closed."""
+        """Make the table empty again if nobody has changed it; all its pages have been closed."""
         if not self.is_touched:
             self._begin(TableDocument(), new_token())
 

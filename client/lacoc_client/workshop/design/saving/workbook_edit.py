@@ -1,4 +1,4 @@
-"""Saves postures into a student's workbook; only the cells of the table change.
+"""Saves postures into a student's workbook; only the table changes, and what depends on it.
 
 Other sheets, colours, widths, pictures, and formulas beside the table stay. Formulas in the table
 become the numbers that the page shows. A formula that may depend on the table loses its stored
