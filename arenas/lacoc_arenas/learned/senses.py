@@ -151,7 +151,10 @@ def _place(marker: MarkerInfo, sign: int) -> tuple[object, ...]:
 
 
 def _value(state: int, seat: int) -> float:
-    """Return a marker's state as a seat sees it: 1, -1, 0 or 0.5, as `Senses` explains."""
+    """Return a marker's state as a seat sees it.
+
+    1: the seat has it; -1: another seat has it; 0: neutral; 0.5: a flag that fell for nobody.
+    """
     if state == seat + 1:
         return 1.0
     return (0.0, -1.0, -1.0, 0.5)[state]

@@ -30,8 +30,8 @@ class Spectator:
     """Everything public about a court: complete also for somebody who connects during the match.
 
     One thread uses it. Only `poll` and `wait_frame` change the attributes; `scene` may change the
-    sheet. Lost messages are requested and come later; frames and a controller's commands do not
-    wait for them, except for a sheet.
+    sheet. Lost messages are requested and come later. A frame waits for its sheet, but for no other
+    lost message; a controller's commands wait for none.
 
     Args:
         session: an open client session.

@@ -126,7 +126,7 @@ class TeamWay:
             self._look()
 
     def played(self, call: str) -> None:
-        """Note that the match of this call is over; `next` then waits for another."""
+        """Note that the match of this call is over; `next` then waits for another call."""
         self._past = call
         self._look()
 

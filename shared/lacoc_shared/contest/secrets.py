@@ -84,7 +84,7 @@ class Secrets:
         return self._owner(_TEAM, token)
 
     def staff(self, name: str) -> str:
-        """Return the token of a member of the staff, who may do the same as the organiser."""
+        """Return the token of a member of the staff, who may do all but choose the staff."""
         return self._of(f"{_STAFF}{name}")
 
     def staff_of(self, token: str) -> str | None:

@@ -1,9 +1,8 @@
 """The messages of a court on the wire (docs/protocol.md has them as tables).
 
 They are separate from the types that the court uses inside, because they are the contract with
-every other program. All are frozen structs, encoded as msgpack by `codec`. `Frame`, `SeatFrame` and
-`Command` are arrays on the wire, because they are sent 50 and 10 times a second, and `TriedKey` is
-one; all others are maps.
+every other program. All are frozen structs, encoded as msgpack by `codec`. `Frame`, `SeatFrame`,
+`Command` and `TriedKey` are arrays on the wire, because many of them are sent; all others are maps.
 """
 
 from typing import Annotated, Any

@@ -152,7 +152,7 @@ def _court_tls(certificate: Pair | None) -> Config:
 def _checked(endpoint: str) -> str:
     """Return an endpoint that makes Zenoh check the court's name, unless it is this machine.
 
-    A message to this machine leaves no machine, and no public certificate is for 127.0.0.1.
+    A message to this machine stays on it, and no public certificate is for 127.0.0.1.
     """
     here = endpoint.startswith("tls/") and address.is_own(address.host(endpoint))
     return f"{endpoint}#verify_name_on_connect=false" if here else endpoint

@@ -165,7 +165,7 @@ class PackedWriter(Recorder):
         """Write the index, because the match is over.
 
         Raises:
-            UserError: as `flush`.
+            UserError: if the disk does not take it; then the file is removed.
         """
         self.flush()
         with self._room():
@@ -175,7 +175,7 @@ class PackedWriter(Recorder):
         """End the file, and give it its name when the disk has everything.
 
         Raises:
-            UserError: as `flush`.
+            UserError: if the disk does not take everything; then the file is removed.
         """
         self.end()
         with self._room():

@@ -27,7 +27,7 @@ class Mixer:
         self._mixed[begin : begin + len(sound)] += sound
 
     def take(self, until: int) -> bytes:
-        """Return all samples before number `until` that were not taken yet, as `add` gets them."""
+        """Return all samples before number `until` that were not taken yet, as bytes."""
         count = max(0, until - self._taken)
         self._reach(count)
         found, self._mixed = self._mixed[:count], self._mixed[count:]

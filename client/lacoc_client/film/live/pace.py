@@ -36,5 +36,5 @@ class PicturePace:
         return number
 
     def time_s(self, number: int) -> float:
-        """Return the time at which a picture of the stream is due [s], by the clock of `now_s`."""
+        """Return the time at which a picture of the stream is due [s], by the stream's clock."""
         return self._began_s + number / self._fps

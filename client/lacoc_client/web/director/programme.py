@@ -54,7 +54,7 @@ class Channel:
         """Show a court in this picture from now on.
 
         Args:
-            late: the late feed of the court.
+            late: the court's messages, passed on some seconds late.
             told: the programme message that names the court, and says why it is shown.
         """
         if told == self._told:

@@ -8,9 +8,9 @@ from lacoc_shared.words import say
 
 
 class Referees:
-    """The pages that have shown a court's referee token; used from the event loop only.
+    """The pages that have shown a court's referee token. One of them may decide: the acting page.
 
-    At most one of them is the acting page: only it may make decisions.
+    Used from the event loop only. At times no page is the acting page; then none may decide.
     """
 
     def __init__(self) -> None:

@@ -63,7 +63,7 @@ class Port:
 
     @property
     def listens(self) -> str:
-        """The address at which it listens, as `listen` takes it, with the real port number."""
+        """The address at which the gateway listens: "HOST:PORT", with the real port number."""
         host, port = self.socket.getsockname()[:2]
         return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 

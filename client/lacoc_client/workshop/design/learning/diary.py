@@ -107,7 +107,10 @@ class Diary:
         self.documents = tuple(documents)
 
     async def add(self, *evidence: Evidence) -> None:
-        """Add evidence; when this returns, it is on the disk, or `Phases.trouble` says why not."""
+        """Add evidence.
+
+        When this returns, the evidence is on the disk, or the student's pages can say why not.
+        """
         if not evidence or self._is_forgotten:
             return
         self._evidence += evidence
@@ -132,7 +135,7 @@ class Diary:
             await _kept(asyncio.wrap_future(vote))
 
     async def write(self, name: str, content: bytes, version: str = "") -> None:
-        """Write a document of the student; if that fails, `Phases.trouble` says why."""
+        """Write a document of the student; if that fails, the student's pages can say why."""
         document = Document(self._student, name, version, time.time(), content)
         store = await self._opened()
         if store is not None and not self._is_forgotten:
