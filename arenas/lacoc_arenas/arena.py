@@ -255,7 +255,7 @@ def is_installed(name: str) -> bool:
 
 
 def from_settings(name: str, settings: dict[str, Any], folder: Path | None = None) -> Arena:
-    """Make the arena in which a record was played again, with the settings of the record.
+    """Make the arena in which a recorded match was played, with the settings in its record.
 
     Args:
         name: as the record has it. It stands only for an installed arena: anybody may have

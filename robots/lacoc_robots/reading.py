@@ -26,7 +26,7 @@ def read_robot_file(name: str) -> RobotSpec:
 def load_gait(file: Path, robot: RobotSpec) -> Gait:
     """Read a gait file of a robot; postures are joined into the sequences of the sample's keys.
 
-    If the file lacks a posture of these, the gait has no level B.
+    If the file lacks a posture of one of these sequences, the gait has no level B.
 
     Raises:
         UserError: if the file can't be read.

@@ -72,7 +72,7 @@ def too_large_standing(
 ) -> list[Mistake]:
     """List the sizes in which a robot that stands with key 0 is too large (rules 1).
 
-    Otherwise a robot could reach a marker while it stands.
+    A robot that is too large could reach a marker while it stands.
     """
     return [
         Mistake(

@@ -143,7 +143,8 @@ class Othello:
             cell: the disc that it enters.
 
         Returns:
-            The entered disc, then the runs that flip with it; empty if nothing flips.
+            The entered disc, then the discs of its row and column that flip too; empty if nothing
+            flips.
         """
         own = seat + 1
         if (

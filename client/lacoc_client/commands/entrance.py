@@ -110,7 +110,7 @@ def contestant(
         court: name of the court to ask.
         connect: address of a court.
         token: the token.
-        authority: file of a private authority.
+        authority: file with the certificate of a private authority.
 
     Raises:
         UserError: if there is no token; also for the reasons of `courts`.

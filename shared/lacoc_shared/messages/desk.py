@@ -136,7 +136,7 @@ class NewCode(DeskRequest, frozen=True, kw_only=True, tag="new_code"):
 
 
 class CloseEntries(DeskRequest, frozen=True, kw_only=True, tag="close"):
-    """Let no more teams enter; the office then draws the first stage and calls its first games."""
+    """Let no more teams enter; the first stage can then be drawn, and its games called."""
 
 
 class Draw(DeskRequest, frozen=True, kw_only=True, tag="draw"):

@@ -148,7 +148,7 @@ class Assign(OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 class Withdraw(
     OfficeRequest, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """A request of the office to a court: close this match, so that it is void."""
+    """A request of the office to a court: close this match; if it is not over, it becomes void."""
 
     call: Call
     begun: bool = False

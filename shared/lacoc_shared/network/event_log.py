@@ -28,7 +28,7 @@ class EventLog(Generic[T]):
         return iter([kept for _, kept in self._known.values()])
 
     def differs(self, match: int, beat: int, number: int) -> bool:
-        """Return whether these events are not the court's: some are missing, or there are others.
+        """Return whether the known events differ from the court's: some are missing, or are others.
 
         Args:
             match: number of the open match, from the court's `Health` message.

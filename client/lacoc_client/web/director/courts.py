@@ -39,7 +39,7 @@ class CourtNow(NamedTuple):
 
     @property
     def is_close(self) -> bool:
-        """Whether the seats' points differ by at most a fifth of all points."""
+        """Whether the points of the two seats differ by at most a fifth of their sum."""
         return len(self.scores) > 1 and abs(self.ahead) <= _CLOSE * sum(map(abs, self.scores))
 
     @property

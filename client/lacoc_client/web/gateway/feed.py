@@ -213,7 +213,7 @@ class CourtFeed:
         self._why = None if self._connected else why
 
     async def _subscribe(self, session: Session) -> None:
-        """Subscribe to the court's messages; fetch the sheet and the events of its match first."""
+        """Subscribe to sheet and events, fetch both, then subscribe to health and frames."""
         loop = asyncio.get_running_loop()
 
         def hear(key: str, depth: int, take: Callable[[bytes], None]) -> None:
@@ -307,7 +307,7 @@ class CourtFeed:
             self.audience.send_if_fast(framed)
 
     def _stray(self) -> None:
-        """Fetch the sheet after a message could not be decoded: it tells the court's version."""
+        """Fetch the sheet after a message could not be decoded: it names the court's version."""
         if self._other_version is None:
             self.picture.view.doubt()
             self._catch_up()

@@ -20,7 +20,7 @@ _MIRROR_COLOUR = "#595959"  # grey: not for editing
 
 
 def add_sheets(book: Workbook, cells: Sequence[Sequence[str | float]], legs: int) -> None:
-    """Add two sheets to a workbook: one to edit, and one whose formulas show its cells.
+    """Add two sheets to a workbook: one to edit, and one whose formulas show the first one's cells.
 
     Args:
         book: the workbook.

@@ -70,8 +70,8 @@ class Phases(msgspec.Struct, frozen=True, kw_only=True):
 class Diary:
     """The evidence and documents of one student; used from the event loop only.
 
-    If the file can't be opened, the evidence stays in memory until the program ends, and
-    `Keeper.trouble` says why.
+    If the file can't be opened, the evidence stays in memory until the program ends, and the
+    keeper can say why.
 
     Args:
         keeper: keeps the file open.

@@ -165,7 +165,8 @@ class StudioDesk:
     async def cancel(self, job: str) -> dict[str, Any]:
         """End a search of this page early, and return an empty reply.
 
-        The request that began the search is then answered with the best result so far.
+        The request that began the search is then answered with the best result so far; if the
+        search still waits for others to end, the request is refused.
         """
         await self._cancel(self._job(job))
         return {}

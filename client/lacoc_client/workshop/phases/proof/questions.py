@@ -157,7 +157,7 @@ def tripod_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
 
 
 def push_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
-    """Ask which feet pushed the body in the last trial, or which way they moved, seen from it."""
+    """Ask which feet pushed the body in the last trial, or how they moved relative to the body."""
     facts = _last_trial(seen).facts
     legs, stood, seed = len(facts.duty), facts.stood, len(seen)
     if turn % 2 == 0:
