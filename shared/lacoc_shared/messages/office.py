@@ -5,8 +5,7 @@ assigns: each match has a call, its teams, the tokens that open their seats, and
 of an open match has no team yet: whoever has its token sits down there, with a name and files.
 
 The office also tells each court where all teams play. So a team can ask any court of the contest,
-with its token, where it plays. Only a program with the office's
-token can tell a court this.
+with its token, where it plays. Only a program with the office's token can tell a court this.
 """
 
 from collections.abc import Collection, Mapping
