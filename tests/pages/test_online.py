@@ -104,7 +104,7 @@ def test_a_contest_at_a_public_address(
         assert {one.partition("#")[0] for one in place.links.values()} == {f"{place.pages}/play"}
 
         def opened(path: str = "/", **options: Any) -> Page:
-            page = open_page(ignore_https_errors=True, **options)
+            page = open_page(**options)
             page.goto(f"{place.pages}{path}")
             return page
 
@@ -121,7 +121,7 @@ def test_a_contest_at_a_public_address(
         assert to_referee is not None
         players = []
         for team in TEAMS:
-            player = Contestant(open_page, place.pages, ignore_https_errors=True)
+            player = Contestant(open_page, place.pages)
             player.page.goto(place.links[team])
             players.append(player)
         shows = [
