@@ -89,7 +89,7 @@ class Court:
             office assigns.
         outlooks: answers referees who ask what would happen if play went on.
         key_trials: says what the keys of seated robots do.
-        try_outs: lets players try their keys before the match.
+        try_outs: lets players try their keys in the lobby.
     """
 
     def __init__(

@@ -32,7 +32,7 @@ class Outlooks:
 
         The function returns None until the copy is played.
 
-        Call it between two beats: during a beat the state of the match is incomplete.
+        Call this object between two beats: during a beat the state of the match is incomplete.
         """
         setup, folder, saved = self._match.setup, self._match.arena.folder, self._match.save()
 

@@ -1,8 +1,8 @@
 """Checks what arrives at a court: tokens, sessions, sequence numbers, seals, floods.
 
 Pure: bytes and the time come in, inputs and refusals come out. A join passes only with a token of
-the seat, any other message only with proof that the seat's own controller sent it. Nothing that
-arrives ever raises an exception, or costs more than a fixed part of a beat.
+the seat, any other message only with proof that the seat's own controller sent it. A message can
+be refused, but raises no exception. A beat looks at a limited number of messages.
 """
 
 from collections import Counter, deque
@@ -259,7 +259,7 @@ class Inbox:
         )
 
     def _own_name(self, seat: _SeatDoor, name: str) -> str:
-        """Add the seat to a team's name if the team in another seat has a name that looks like it.
+        """Add the seat's name to a team's name if the name of another seat's team looks like it.
 
         Otherwise readers could not tell the two teams apart in events and on pages.
         """
@@ -360,7 +360,7 @@ class Inbox:
         return request if isinstance(request, Refusal) else LeaveSeat(index)
 
     def try_out(self, index: int, payload: bytes) -> TryOutRequest | Refusal:
-        """Check a request to try keys before the match."""
+        """Check a request to try keys in the lobby."""
         request = self._request(index, payload, "try", TryOutRequest)
         if isinstance(request, Refusal):
             return request

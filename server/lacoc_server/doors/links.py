@@ -128,7 +128,7 @@ class Links:
         Returns:
             Whether the command proves that its sender is connected. It does if it names a newer
             frame than all commands before it, or again the newest frame that was named, while that
-            frame is recent. So a recorded command that somebody sends again soon proves nothing.
+            frame is recent. So a recorded command proves nothing if somebody sends it again later.
         """
         link, seen = self._links[seat], (command.match, command.seen)
         if seen <= link.newest:

@@ -85,7 +85,7 @@ class CourtNetwork:
         office_desk: checks what comes from the office; None: the court has no office.
         look_ahead: answers referees who ask for an outlook; None: nobody answers them.
         team_desk: answers whoever asks where to play, at a court without an office.
-        try_out: lets players try their keys before the match; None: nobody answers them.
+        try_out: lets players try their keys in the lobby; None: nobody answers them.
 
     Raises:
         UserError: if the court can't listen on an address.

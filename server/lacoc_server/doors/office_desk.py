@@ -102,7 +102,7 @@ class OfficeDesk(Generic[T]):
         self._call = ""
         self._phase = Phase.CREATED
         self._past: deque[str] = deque(maxlen=_REMEMBERED)
-        """Calls whose matches this court has closed; a late copy must not open one again."""
+        """Calls whose matches this court has closed; a late request must not open one again."""
 
     def hold(self, call: str, phase: Phase) -> None:
         """Take note of the court's match, after each beat that is on disk.

@@ -103,8 +103,8 @@ def last_result(folder: Path, court: str, arena: Arena) -> Unfinished | None:
     """Find the newest match of a court, if the office assigned it and it is over; else None.
 
     Perhaps the court was ended before the office heard the result. So a court that is started again
-    shows this result until the office assigns the next match. If it can't play the record again,
-    return None.
+    shows this result until the office assigns the next match. If the record can't be played
+    again here, return None.
 
     Args:
         folder: folder of the records.

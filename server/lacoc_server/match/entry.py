@@ -126,7 +126,8 @@ class JoinCheck:
     """Completes the files in a request to join (`Join`), and checks them all.
 
     A request without any file gets the files of its seat if its team has that seat, else the
-    contest's robot with its sample gait. A request with gait files only gets the contest's robot.
+    contest's robot with its sample gait. If there are gait files but no robot file, the robot is
+    the contest's.
     A gait file is never added to files that a team sent.
     """
 

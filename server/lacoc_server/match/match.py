@@ -70,7 +70,7 @@ class Match(MatchState):
         self._shown: tuple[Any, bytes, tuple[int, ...]] = (None, b"", ())
         """The last game state that was packed, its board as in frames, and each seat's points."""
         self._gains: tuple[Any, tuple[Gains, ...]] = (None, ())
-        """The last game state that was asked for gains, and each seat's."""
+        """The last game state for which gains were computed, and the gains of each seat."""
 
     def legality(self) -> dict[str, Phrase | None]:
         """Return for each decision, by name, None if it is legal now, else why not."""

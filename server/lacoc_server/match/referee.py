@@ -1,8 +1,8 @@
 """The referee's decisions: when each is legal, why it is not, and what it does.
 
 Workshop 5-1 rule 8 and 5-2 rule 9: "In the event of an unexpected event, the referee will consult
-and make a decision." Every decision is an event with referee, beat and reason; nothing is deleted
-(rules 4.1).
+and make a decision." Every decision that is carried out is an event with referee, beat and reason;
+no event is deleted (rules 4.1).
 """
 
 from collections.abc import Callable

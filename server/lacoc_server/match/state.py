@@ -109,7 +109,7 @@ class MatchState:
         self.rules_failed = False
         """Whether such an error has halted the match."""
         self.halted_by = THE_COURT
-        """In a halt, whose decision began it; `THE_COURT` for its own, for a fault, and else."""
+        """In a halt: who decided it; `THE_COURT` if the court or a fault did. Else `THE_COURT`."""
         self.staging = Staging(self.arena, make_physics)
         self.event_count = 0
         """Number of the newest event in the log; the first is 1."""

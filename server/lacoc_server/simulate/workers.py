@@ -1,4 +1,4 @@
-"""Runs jobs in other processes. If a process dies, only its job is lost; a new process starts."""
+"""Runs jobs in other processes. If a process dies, at most its job is lost; a new one starts."""
 
 import contextlib
 import os

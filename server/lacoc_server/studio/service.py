@@ -25,7 +25,8 @@ _MOST_WAITING = 128
 class Studio:
     """Answers requests over the network until it is closed; used as a context manager.
 
-    Zenoh's threads bring the requests. The threads that serve the processes send the answers.
+    Zenoh's threads bring the requests, and refuse some at once. Other threads send the answers that
+    processes compute.
 
     Args:
         name: name of the studio.

@@ -2,5 +2,5 @@
 
 `course` runs a trial, and `walk` holds what was measured in each tick. `feet` and `support` find
 steps and balance, `figures` computes the figures, and `explain` explains them. `steps` computes
-where the feet go from the table alone. No module of this package knows MuJoCo.
+from the table alone where the feet go. No module of this package knows MuJoCo.
 """

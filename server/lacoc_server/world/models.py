@@ -103,7 +103,7 @@ def _without_obstacles(stepped: Any) -> Any:
 
 
 def _without_search(spec: mujoco.MjSpec, stepped: Any) -> Any:
-    """Compile the model of robots that meet fixed geoms only, as a list of pairs of geoms.
+    """Compile a model in which robots meet only fixed geoms, by a list of pairs of geoms.
 
     The contacts of a pair are the same as those that MuJoCo finds by its search, because the
     robot's geom decides friction and softness (`priority`).

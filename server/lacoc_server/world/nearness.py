@@ -1,6 +1,6 @@
 """Chooses the model that MuJoCo steps with the least work, from where the robots are.
 
-All models of a world have the same path, as long as no robot comes near what a model leaves out.
+In all models of a world robots move alike, as long as none comes near what a model leaves out.
 A robot is inside a ball around the origin of its body, at all angles of its joints. So only the
 places of the bodies count. They are looked at before each tick.
 """
@@ -20,7 +20,7 @@ from lacoc_server.world.robot import Robot, reach_m
 _SKIN_M = 0.03
 """How far a body moves before the model is chosen again [m]."""
 _TICK_M = 0.1
-"""Assumed: no two robots, and no robot and a wall, come nearer by so much in a tick [m]: 5 m/s."""
+"""Assumed: two robots, or a robot and a wall, approach each other by less in a tick [m]: 5 m/s."""
 
 
 class _Obstacle(NamedTuple):

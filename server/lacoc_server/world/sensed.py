@@ -67,7 +67,7 @@ class SensedWorld(World):
         return float(-self.model.body_subtreemass[self._root] * self.model.opt.gravity[2])
 
     def sensed(self) -> Sensed:
-        """Return the measurements of the last tick; before its first tick, loads are NaN."""
+        """Return the measurements of the last tick; before the first tick, loads are NaN."""
         data, legs = self.data, self._legs
         feet = self._sensors[:, : 6 * legs].reshape(self._steps, legs, 6)
         load_n, at_w_m = np.abs(feet[:, :, 2]), feet[:, :, 3:]

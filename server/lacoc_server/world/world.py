@@ -51,9 +51,9 @@ _WARNINGS = {
 class World:
     """Robots on a field, stepped tick by tick; implements `match.physics.Physics`.
 
-    The model is compiled when the world is made. What MuJoCo steps is less than what pictures show,
-    with the same bits (`models`). The same state and angles give the same bits after a tick, on one
-    version of MuJoCo and one kind of machine.
+    The model is compiled when the world is made. MuJoCo steps a model without what only pictures
+    show, and gets the same bits (`models`). The same state and angles give the same bits after a
+    tick, on one version of MuJoCo and one kind of machine.
 
     Args:
         arena: the field and its game.

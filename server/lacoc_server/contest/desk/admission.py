@@ -10,8 +10,9 @@ from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import Phrase, say
 
 _GUESSES_HZ, _GUESSES_BURST = 20.0, 200
-"""How many wrong secrets a second, and how many at once, are told that they are wrong. Beyond that
-the answer is `Slower`. What slows down whoever guesses is the gateway (`web.gateway.guesses`)."""
+"""Whoever shows a wrong secret is told so: this often in a second, and this often at once. Beyond
+that the answer is `Slower`. What slows down whoever guesses is the gateway
+(`web.gateway.guesses`)."""
 
 
 class Slower(UserError):

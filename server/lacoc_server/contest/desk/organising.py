@@ -38,7 +38,7 @@ def approve(book: Book, asked: Approve) -> Said:
 
     Raises:
         UserError: if a team has neither applied nor taken part before, if it can't come back, or if
-            a reason is missing. The teams before it in the list stay approved.
+            a reason is missing. The teams before that team in the list stay approved.
     """
     said: list[Phrase] = []
     for team in asked.teams:
@@ -225,7 +225,9 @@ def staff(book: Book, asked: Staff) -> Said:
 
 
 def tokens(book: Book, by: str) -> TokenList:
-    """Return the tokens of referees, open seats, and teams without a bot that have entered or wait.
+    """Return the tokens of referees, of open seats, and of all teams that people play for.
+
+    These are teams in the contest, and teams that wait for the organiser's approval.
 
     Args:
         book: the contest.

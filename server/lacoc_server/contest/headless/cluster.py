@@ -26,7 +26,8 @@ class Cluster:
     """Plays games at the workers of a cluster; used as a context manager.
 
     A game's record comes back with its result, so the workers need no common disk. If a worker is
-    lost during a game, another worker plays the game again. While there is no worker, games wait.
+    lost during a game, another one plays it again, at most three times. While there is no worker,
+    games wait.
 
     Args:
         address: address of the cluster's scheduler, such as tcp://192.168.1.20:8786.

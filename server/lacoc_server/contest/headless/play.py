@@ -230,9 +230,9 @@ def late_ticks(contest: Contest, facts: Sequence[AnyFact], match: ContestMatch) 
     """Return how many ticks late the bots start in the next game of a match.
 
     If they always started at once, two teams that meet again would repeat their earlier game. The
-    number depends on the draw, and on how often this next game was played without a result that
-    counts. It never depends on the order in which other games are played. `contest` and `facts`
-    must be as they were before the game.
+    number depends on the draw, on the game's number, and on how often this game was played without
+    a result that counts. It does not depend on the order in which other games are played. `contest`
+    and `facts` must be as they were before the game.
     """
     before = 0
     for view in contest.stages:

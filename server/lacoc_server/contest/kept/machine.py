@@ -25,7 +25,7 @@ class Machine(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     known: tuple[str, ...] = ()
     """For an office: addresses of machines that were the office before, or have copied it."""
     copied_ms: int = 0
-    """For a copy: the last time at which all of it was equal to the office's folder, in
+    """For a copy: the last time at which the whole copy was equal to the office's folder, in
     milliseconds since 1970, UTC; 0: never yet."""
     ends: bool = False
     """For a copy: whether the program that copies must end, because the office goes on at this

@@ -194,7 +194,7 @@ def not_for_courts(stages: Iterable[Planned | OpenStage | None]) -> Phrase | Non
 
 
 def note_plans(store: FactStore, wanted: list[Planned]) -> None:
-    """Append, as facts, the plans that are new or have changed, and which are no longer there.
+    """Append facts: plans that are new or have changed, and stages that are not planned any more.
 
     Raises:
         UserError: if the plan of a stage that is drawn has changed; nothing is appended then.

@@ -99,7 +99,7 @@ def _is_tied(table: Table, row: Standing, behind: Standing) -> bool:
 
 
 def _beaten(before: StageView, own: Table, team: str, entries: tuple[str, ...]) -> Standing | None:
-    """Find the best team that has the same place in another group and does not go on.
+    """Find, in the other groups, the best team that has the place of `team` and does not go on.
 
     Return None if there is no such team.
     """

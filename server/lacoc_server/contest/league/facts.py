@@ -268,7 +268,7 @@ class Voided(Fact, frozen=True, kw_only=True, tag="voided"):
 
 
 class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
-    """A decision: the team did not appear; its opponent, if it came, wins what is open."""
+    """A decision: the team did not appear; its opponent, if it came, wins the undecided match."""
 
     pairing: Name
     team: Name

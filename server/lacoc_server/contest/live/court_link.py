@@ -1,8 +1,9 @@
 """The office's connection to one court: assigns matches, and reads their states and results.
 
-Nothing here waits. A court's health messages say how new its sheet and its events are. If they are
-newer than the copies here, the office asks for them. So after a lost message, or a restart of court
-or office, the newest ones are here half a second later, and no result is lost.
+Only `Asked.wait` waits; nothing else here does. A court's health messages say how new its sheet and
+its events are. If they are newer than the copies here, the office asks for them. So after a lost
+message, or a restart of court or office, the newest ones are here half a second later, and no
+result is lost.
 """
 
 import time
@@ -218,7 +219,7 @@ class CourtLink:
     def poll(self) -> None:
         """Read the messages and answers that have arrived.
 
-        Ask for a newer sheet or newer events.
+        If a health message says that the court has a newer sheet or newer events, ask for them.
         """
         frame = _newest(self._frames, Frame)
         self.frame = frame or self.frame

@@ -1,7 +1,8 @@
 """The office of a contest: it gives courts their games, and appends their results to the facts.
 
-It keeps no state of its own: everything is in the facts and at the courts. So it can be killed at
-any moment: started again, it reads the facts, asks the courts what they have, and goes on.
+It stores no state of its own: what it needs after a restart is in the facts and at the courts. So
+it can be killed at any moment: started again, it reads the facts, asks the courts what they have,
+and goes on.
 """
 
 import time
@@ -88,7 +89,7 @@ class Office:
         self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
         self._asked_ms: dict[str, int] = {}
-        """When a court was last asked about a call, by its id, in milliseconds since 1970, UTC."""
+        """By id of the call: when a court was last asked about it, in ms since 1970, UTC."""
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self._held_files: dict[tuple[str, int], tuple[str, ...]] = {}
@@ -189,9 +190,9 @@ class Office:
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.
 
-        `follows` is called twice: first with the contest known here. If it then returns facts, it
-        is called with the newest contest, which includes facts of other programs. Only the facts of
-        the second call are appended.
+        `follows` is first called with the contest known here. Only if it returns facts, it is
+        called again with the newest contest, which includes facts of other programs. Only the facts
+        of the second call are appended.
         """
         if [*follows(self.contest)]:
             self._store.decide(lambda facts: follows(self._newest.of(facts)))

@@ -1,4 +1,4 @@
-"""Answers the machine that copies the office; it may read all files of the office.
+"""Gives the machine that copies the office what it lacks: facts, entries, records, small files.
 
 The messages between the two machines are encrypted.
 """

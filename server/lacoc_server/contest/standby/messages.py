@@ -1,7 +1,7 @@
 """Messages between an office and the machine that copies it (the second machine).
 
-The second machine says what it has, and the office answers with what it lacks. Neither keeps a
-state of the other, so both can be restarted at any time. `sealing` encrypts the messages.
+The second machine says what it has, and the office answers with what it lacks. Neither has to
+remember what the other has, so both can be restarted at any time. `sealing` encrypts the messages.
 """
 
 from typing import Annotated, Literal

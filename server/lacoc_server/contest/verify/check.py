@@ -99,7 +99,10 @@ def check(
 
 
 def _steered(facts: Sequence[AnyFact]) -> Iterator[Phrase]:
-    """Yield, as a decision of people, which bots steered teams without a bot in how many games."""
+    """Yield a phrase for each bot that steered teams without one: its name, and how many games.
+
+    People chose these bots, so the phrases are listed among their decisions.
+    """
     bots = Counter(fact.steer for fact in facts if isinstance(fact, Played) and fact.steer)
     for bot, games in bots.items():
         yield say("verify.steered", bot=bot, games=games)

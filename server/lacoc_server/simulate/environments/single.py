@@ -22,7 +22,7 @@ from lacoc_shared.words import say
 class LacocEnv(gymnasium.Env[Numbers, Any]):
     """A match against a bot. The seed of an episode chooses the learner's seat too.
 
-    Spaces, rewards and arguments are those of `LacocParallelEnv`, for one agent.
+    Spaces and rewards are those of one agent of `LacocParallelEnv`.
 
     Args:
         arena: name or folder of the arena.

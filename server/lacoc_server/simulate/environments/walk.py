@@ -91,13 +91,13 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     tilted by 60 degrees or more. After `seconds` it is cut.
 
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
-    "reward_forward" is the mean speed of the step [m/s] in the direction in which the robot stood,
-    times a weight; "reward_survive" is paid for each step in which the robot is not falling;
-    "reward_ctrl" is the mean square of how far the action asks the joints to move, in halves of
-    their ranges, times a negative weight. `names` lists what is seen. Of the body it is how far
-    its middle is ahead and to the left of its start, its height, the parts of its forward direction
-    ahead and to the left, how upright it is (1 upright, -1 on its back), and its velocity. Then
-    come joint angles and commanded angles.
+    "reward_forward" is the mean speed of the step [m/s], in the direction that the robot faced when
+    the episode began, times a weight; "reward_survive" is paid for each step in which the robot is
+    not falling; "reward_ctrl" is the mean square of how far the action asks the joints to move, in
+    halves of their ranges, times a negative weight. `names` lists what is seen. Of the body it is
+    how far its middle is ahead and to the left of its start, its height, the parts of its forward
+    direction ahead and to the left, how upright it is (1 upright, -1 on its back), and its
+    velocity. Then come joint angles and commanded angles.
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed
@@ -189,7 +189,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             angles = [f"{what} {j} [rad]" for what in ("angle", "commanded") for j in range(joints)]
             high = {**_BODY, **dict.fromkeys(angles, np.pi)}
         self.names = tuple(high)
-        """The meaning of each number that is seen."""
+        """The meaning of each number of the observation."""
         top = np.array(list(high.values()), np.float32)
         self.observation_space = spaces.Box(-top, top, dtype=np.float32)
         self._has_begun = False

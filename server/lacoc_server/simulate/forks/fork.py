@@ -33,7 +33,7 @@ class Forked:
     changes: tuple[Phrase, ...]
     """Events that a take-back removed or made new."""
     left_out: int
-    """Recorded take-backs that were left out (`ForkLine.left_out`)."""
+    """How many recorded take-backs the fork left out (`ForkLine.left_out`)."""
     record: Path | None
     """The fork's record; None: none was wanted."""
 
@@ -58,8 +58,8 @@ def fork(
         changes: the same change, as the fork's record describes it; None: the record does not.
         match_id: id of the fork.
         folder: folder of the fork's record; None: none is written.
-        seconds: how long the fork goes on at most [s], but until its change is made; None: until
-            play ends.
+        seconds: how long the fork goes on at most [s]; but it goes on until its change is made.
+            None: until play ends.
         arena: folder of the arena, if it is not installed.
 
     Raises:

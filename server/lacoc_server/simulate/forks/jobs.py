@@ -30,7 +30,7 @@ class ForkJob(msgspec.Struct, frozen=True, kw_only=True):
     """The key script of each seat that a script plays, by id of the seat."""
     bots: tuple[str, ...] = ()
     """The bot of each seat; `brains.RECORDED`: the seat keeps its recorded keys. Empty: all seats
-    do."""
+    keep theirs."""
     variant: int = 0
     """Number that chooses how late the bots press their keys; see `line.of_bot`."""
     seconds: float | None = None

@@ -60,8 +60,8 @@ class ForkLine:
         record: the record of the match, whole.
         match: the match after the beat before the fork.
         change: how the fork differs from the record.
-        seconds: how long the fork goes on at most [s], but until its change is made; None: until
-            play ends.
+        seconds: how long the fork goes on at most [s]; but it goes on until its change is made.
+            None: until play ends.
     """
 
     def __init__(

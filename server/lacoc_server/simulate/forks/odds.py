@@ -135,7 +135,7 @@ def steps(moments: Iterable[MomentOdds]) -> list[Swing]:
 def swings(moments: Iterable[MomentOdds]) -> list[Swing]:
     """Return the stretches in which the odds only grew or only fell, the largest change first.
 
-    A beginning or end of a stretch in which they changed little (`_SLOW`) is left out.
+    A beginning or end of a stretch is left out if the odds changed little in it (`_SLOW`).
     """
     runs = [[*run] for _, run in groupby(steps(moments), lambda step: step.change > 0)]
     found = [_without_slow_ends(run) for run in runs]

@@ -37,7 +37,10 @@ class Search:
         self.tried([table])
 
     def tried(self, tables: Sequence[Angles]) -> list[float]:
-        """Try tables at the same time and return their scores; no table is ever tried twice."""
+        """Try tables at the same time and return their scores.
+
+        A table whose score is known already is not tried again.
+        """
         new = list(dict.fromkeys(one for one in tables if one not in self._known))
         self._known.update(zip(new, self._score(new), strict=True))
         for one in new:

@@ -37,7 +37,8 @@ _TIPPED = 0.8
 _TURNS_DEG_S, _SLIDES_MM_S, _SLOW_MM_S = 3.0, 20.0, 15.0
 _STILL_MM_S, _BACK_MM_S = 5.0, 5.0
 _SLIDES_MOST = 1.25
-"""Sliding is named early if the feet slide more than this many times as fast as the robot goes."""
+"""The sentence about sliding comes early if the feet slide more than this many times as fast as the
+robot goes."""
 _HANGS, _WHOLE, _LEG = 97.0, 95.0, 69.0
 """Ranks of mistakes in the table: feet do not reach the floor, any other, one of a single leg. The
 last is low, so that an effect of the leg's mistake (`legs`) is told instead of it."""

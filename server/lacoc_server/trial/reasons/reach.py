@@ -43,7 +43,7 @@ def reach_repairs(form: KeyForm) -> list[Repair]:
 
 
 def _lowered(form: KeyForm, high: list[int], level: int, start_deg: Floats) -> Iterator[KeyForm]:
-    """Yield the table with the high legs lowered, by one joint and then by both.
+    """Yield the table with the high legs lowered: by the joint `level`, then by 1st and 2nd.
 
     Each joint is lowered until its lowest number is that of the start posture.
     """

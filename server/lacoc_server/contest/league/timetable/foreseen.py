@@ -1,8 +1,8 @@
 """Every match that is still to come, also those whose teams or draws are not known yet; pure.
 
 A stage that is not drawn is shown with the bracket or rounds that it would have with the present
-teams. Ids of pairings depend only on the number of teams, so a match can be moved before its stage
-is drawn.
+teams. Ids of pairings follow from the plan and the number of teams. So a match can be moved before
+its stage is drawn.
 """
 
 from collections.abc import Collection, Iterator, Mapping

@@ -25,7 +25,7 @@ from lacoc_shared.words import Phrase, say
 
 
 class Ticker:
-    """Makes a line, once, for each draw, game and decision, and for courts that go or come back.
+    """Makes one line for each draw, game and decision, and when a court falls silent or returns.
 
     Args:
         facts: the facts that the contest has already; they give no lines.

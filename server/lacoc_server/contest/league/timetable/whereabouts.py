@@ -361,9 +361,9 @@ def starts(
 ) -> Iterator[tuple[str, ProbableStart]]:
     """Estimate when and where each match to come begins; yield its pairing's id and its start.
 
-    The matches are given to the courts in their order. A court that has been silent for `LOST_MS`
-    gets none; if all have, nothing is yielded. During a pause without an end, the times are as if
-    it ended now; only organisers see them.
+    The matches are given to the courts in the order of `coming`. A court that has been silent for
+    `LOST_MS` gets none; if all have, nothing is yielded. During a pause without an end, the times
+    are as if it ended now; only organisers see them.
 
     Args:
         contest: the contest.
