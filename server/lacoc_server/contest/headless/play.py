@@ -35,8 +35,8 @@ from lacoc_shared.record.summary import Summary, summary
 from lacoc_shared.words import Phrase, say
 
 LATE_TICKS = 7
-"""Two teams can meet again in the same seats. For each earlier game of them in these seats, their
-bots start this many ticks later."""
+"""Two teams can meet again. Their bots then start later by this many ticks for each earlier game of
+the match in the same seats, and for each game that an earlier match of the two can have at most."""
 _MOST_DEATHS = 3
 """How many times a game is played again at most because the process that played it died."""
 _MOST_VOIDS = 3

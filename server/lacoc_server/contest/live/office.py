@@ -93,7 +93,7 @@ class Office:
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self._held_files: dict[tuple[str, int], tuple[str, ...]] = {}
-        """Hashes of the files with which these games were refused."""
+        """By game in `held`: hashes of the files with which it was refused."""
         self.contest: Contest = self._compute()
         self.known = OfficeKnowledge({name: SeenCourt(0) for name in links}, self._teller.pace, {})
         """What the office knew at the newest step; any thread may read it."""

@@ -2,8 +2,8 @@
 
 Rounds are drawn one by one (`facts.RoundDrawn`), so a later correction changes points but not who
 has met. The pairs are those of the FIDE (Dutch) system, with one rule that is stricter: a team that
-sat left once more than right must sit right. If the system finds no pairing, or the stage is too
-large for its engine, a matching algorithm breaks as few rules as possible.
+sat on one side once more than on the other must change. If the system finds no pairing, or the
+stage is too large for its engine, a matching algorithm breaks as few rules as possible.
 """
 
 import logging
