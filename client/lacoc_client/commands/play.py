@@ -225,7 +225,7 @@ def _seated(
 ) -> Controller:
     """Join a seat, tell the contestant what the keys do, and return the controller.
 
-    Arguments as in `play`.
+    With `ready`, also say that the contestant is ready. The other arguments are those of `play`.
     """
     controller = Controller(
         session, access.court, access.seat, access.token, team, **files._asdict()

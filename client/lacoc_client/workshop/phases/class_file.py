@@ -143,7 +143,7 @@ class ClassFile:
         return list(_readable(rows))
 
     def documents(self) -> list[Document]:
-        """Read the newest content of all documents of the class."""
+        """Read all documents of the class, such as tables and settings, in their newest version."""
         rows = self._db.execute("SELECT student, name, version, at_s, content FROM tables")
         return [Document(*row) for row in rows]
 

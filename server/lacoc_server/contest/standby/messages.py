@@ -50,7 +50,7 @@ class StepAsk(StandbyAsk, frozen=True, kw_only=True, tag="step"):
 
 
 class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
-    """Asks for a part of an entry, an application or a small file. The answer is `Got`."""
+    """Asks for a part of an entry, application or small file. The answer is `Got`, or `Lacks`."""
 
     kind: Kind
     name: str
@@ -59,7 +59,7 @@ class PartAsk(StandbyAsk, frozen=True, kw_only=True, tag="part"):
 
 
 class RecordAsk(StandbyAsk, frozen=True, kw_only=True, tag="record"):
-    """Asks for the next part of a match's record. The answer is `Got`."""
+    """Asks for the next part of a match's record. The answer is `Got`, or `Lacks`."""
 
     match_id: str
     have: dict[str, int]

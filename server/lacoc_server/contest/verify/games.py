@@ -150,10 +150,12 @@ def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = F
 
 
 def _compared(folder: Path, game: GameToCheck, record: Record, programs: bool) -> GameCheck:
-    """Compare a game with its record, without physics; the arguments are those of `check_game`.
+    """Compare a game with `record`, its record, without physics.
+
+    The other arguments are those of `check_game`.
 
     Raises:
-        UserError: if the arena of the plan is not installed, or its settings are wrong.
+        UserError: if the arena of the game's stage is not installed, or its settings are wrong.
     """
     arena = _arena(game)
     wrong = [*_differences(game, arena, record)]

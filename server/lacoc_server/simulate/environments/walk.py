@@ -93,11 +93,11 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
     "reward_forward" is the mean speed of the step [m/s], in the direction that the robot faced when
     the episode began, times a weight; "reward_survive" is paid for each step in which the robot is
-    not falling; "reward_ctrl" is the mean square of how far the action asks the joints to move, in
-    halves of their ranges, times a negative weight. `names` lists what is seen. Of the body it is
-    how far its middle is ahead and to the left of its start, its height, the parts of its forward
-    direction ahead and to the left, how upright it is (1 upright, -1 on its back), and its
-    velocity. Then come joint angles and commanded angles.
+    not falling; "reward_ctrl" is the mean square of how much the action changes the commanded
+    angles, in halves of the joints' ranges, times a negative weight. `names` lists what is seen. Of
+    the body it is how far its middle is ahead and to the left of its start, its height, the parts
+    of its forward direction ahead and to the left, how upright it is (1 upright, -1 on its back),
+    and its velocity. Then come joint angles and commanded angles.
 
     With actions "table" an action is the table of key 2: a row for each posture, a number for each
     joint. An episode is one step, a trial as `lacoc trial` has it, and the reward is the speed

@@ -83,8 +83,8 @@ def task_of(
         gait: the robot's gait, which has the key.
         key: digit of the key.
         goal: what the key is for.
-        sequences: for each key the digits of its postures in the Loco-data file; None if the gait
-            has a LocoTra-data file.
+        sequences: for each key the postures that it runs through, by their digits in the Loco-data
+            file; None if the gait has a LocoTra-data file, which has the angles itself.
     """
     stand = gait.sequence(Level.LOCOMOTION, 0) or (robot.start_posture,)
     digits = None if sequences is None else sequences[key]

@@ -1,8 +1,8 @@
 """Lists the changes that would repair a table, each with its reason.
 
-Each change undoes one mistake of a beginner: in a sign, a number, a leg, a row, the order of rows,
-a side, or half of the cycle. It uses the numbers of the partners (the opposite legs), which do not
-have this mistake.
+Each change undoes one mistake of a beginner: in a number, a joint, a leg, a row, a side, or half of
+the rows. It changes signs, swaps two rows, shifts a leg in time, or copies the numbers of the
+partners (the opposite legs, half a cycle later) or of another leg.
 """
 
 from collections.abc import Iterator

@@ -2,7 +2,7 @@
 
 Workbooks come from strangers. If one of them crashes or blocks the process that reads it, the file
 is refused, and the gateway, office or class goes on. The process starts with the first workbook,
-and ends with the program for which it reads.
+starts again after one that ended it, and ends with the program for which it reads.
 """
 
 import atexit

@@ -199,7 +199,8 @@ class Learner:
 
         A step that the student reaches twice in a row is kept once.
 
-        The first answer to a question counts for the step; a later answer counts as new work.
+        The first answer to a question, right or wrong, counts for its step. After a wrong answer to
+        the question of phase 0, one more answer here lets that question be asked again.
         """
         is_answer = asked.question is not None
         one = TookStep(
