@@ -196,6 +196,10 @@ def told(page: PageTable, entries: dict[str, Any], **changes: Any) -> TableUpdat
     return TableUpdate(**{**page.put(entries), **changes})
 
 
+async def keep_nothing(state: bytes, epoch: str) -> None:
+    """Stand for a disk on which nothing is looked at."""
+
+
 def test_edits_share_writes_and_wait_for_the_disk() -> None:
     """A reply waits until its edit is on the disk; edits that come meanwhile share one write."""
     kept: list[bytes] = []
@@ -261,11 +265,8 @@ def test_a_table_that_was_only_opened_is_not_kept() -> None:
 def test_a_flood_at_one_table_is_refused() -> None:
     """More updates than a table takes are refused, and change nothing."""
 
-    async def keep(state: bytes, epoch: str) -> None:
-        pass
-
     async def flood() -> None:
-        table = SharedTable("", keep)
+        table = SharedTable("", keep_nothing)
         viewer = Viewer(Wire())
         table.add(viewer, "")
         page = PageTable(table.opened())
@@ -383,11 +384,8 @@ def test_a_draft_of_an_earlier_version_becomes_a_table() -> None:
 def test_two_pages_with_one_number_do_not_hide_each_others_edits() -> None:
     """The second one is told to begin again, with a number of its own."""
 
-    async def keep(state: bytes, epoch: str) -> None:
-        pass
-
     async def edit() -> None:
-        table = SharedTable("", keep)
+        table = SharedTable("", keep_nothing)
         one, other = Viewer(Wire()), Viewer(Wire())
         for viewer in (one, other):
             table.add(viewer, "")
@@ -407,11 +405,8 @@ def test_two_pages_with_one_number_do_not_hide_each_others_edits() -> None:
 def test_an_edit_that_shows_nothing_holds_back_no_later_one() -> None:
     """A page that lacks one edit of another page shows none of that page's later edits."""
 
-    async def keep(state: bytes, epoch: str) -> None:
-        pass
-
     async def edit() -> None:
-        table = SharedTable("", keep)
+        table = SharedTable("", keep_nothing)
         sockets = [Wire() for _ in range(2)]
         one, other = map(Viewer, sockets)
         for viewer in (one, other):
@@ -434,11 +429,8 @@ def test_an_edit_that_shows_nothing_holds_back_no_later_one() -> None:
 def test_the_newest_whole_table_is_the_draft() -> None:
     """A cell without an angle leaves the draft as it was just before."""
 
-    async def keep(state: bytes, epoch: str) -> None:
-        pass
-
     async def edit() -> None:
-        table = SharedTable("", keep)
+        table = SharedTable("", keep_nothing)
         viewer = Viewer(Wire())
         table.add(viewer, "")
         page = PageTable(table.opened())
@@ -456,11 +448,8 @@ def test_the_newest_whole_table_is_the_draft() -> None:
 def test_pages_hear_of_places_at_a_bounded_rate() -> None:
     """However many pages move, each is told at most so often; the last place arrives."""
 
-    async def keep(state: bytes, epoch: str) -> None:
-        pass
-
     async def move() -> None:
-        table = SharedTable("", keep)
+        table = SharedTable("", keep_nothing)
         sockets = [Wire() for _ in range(5)]
         viewers = [Viewer(socket) for socket in sockets]
         for viewer in viewers:
