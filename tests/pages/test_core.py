@@ -22,7 +22,7 @@ EDITED = [case for case in CASES if case.name == "design_shared.test.mjs"]
 
 @pytest.mark.parametrize(
     ("cases", "edits"),
-    [(CASES, 200), pytest.param(EDITED, 500, marks=pytest.mark.long(minutes=1))],
+    [(CASES, 200), pytest.param(EDITED, 1000, marks=pytest.mark.long(minutes=1))],
     ids=["all", "many edits"],
 )
 def test_the_pure_parts_of_the_pages(cases: list[Path], edits: int) -> None:
