@@ -1,1 +1,1 @@
-"""The court: the process that alone decides what happens in a match."""
+"""The court, which alone decides what happens in a match; the office; the studio; simulation."""

@@ -74,9 +74,8 @@ def test_a_sound_that_comes_late_is_heard_at_once() -> None:
 
 
 def test_where_a_stream_can_go(tmp_path: Path) -> None:
-    """Servers, folders and files are told apart; the key of a stream is not shown."""
+    """Servers, folders and files are told apart."""
     assert target("rtmp://a.example/live/key").form == "flv"
-    assert target("rtmp://a.example/live/key").shown == "rtmp://a.example/live/..."
     assert target(f"{tmp_path}").address == f"{tmp_path}/index.m3u8"
     assert target(f"{tmp_path}/hls").address == f"{tmp_path}/hls/index.m3u8"
     (tmp_path / "a.mkv").write_bytes(b"of yesterday")
@@ -90,6 +89,20 @@ def test_where_a_stream_can_go(tmp_path: Path) -> None:
     ):
         with pytest.raises(UserError):
             target(wrong)
+
+
+@pytest.mark.parametrize(
+    "rest",
+    ["live/KEY", "live/KEY/", "?streamid=KEY", "live?name=KEY#KEY", "KEY", "live/a@KEY", ""],
+)
+def test_the_key_of_a_stream_is_not_shown(rest: str) -> None:
+    """Neither by an address that is right nor by the error about one that is not."""
+    assert target(f"rtmp://user:KEY@a.example:1935/{rest}").shown == "rtmp://a.example:1935/..."
+    assert target(f"srt://a.example{rest and '?' + rest}").shown == "srt://a.example/..."
+    with pytest.raises(UserError) as mistake:
+        target(f"rtmpx://a.example/{rest}")
+    assert "rtmpx://a.example/..." in str(mistake.value)
+    assert "KEY" not in str(mistake.value)
 
 
 @pytest.fixture(scope="module")

@@ -69,7 +69,7 @@ listen = ["127.0.0.1:{free_port()}"]
 [stage.final]
 format = "round-robin"
 arena = "othello"
-settings.match.duration_s = 6.0
+settings.match.duration_s = 2.0
 settings.match.countdown_s = 0.5
 """)
     for team in TEAMS:

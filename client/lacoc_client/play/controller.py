@@ -127,8 +127,8 @@ class Controller:
         team: the team's name.
         robot: a robot file; None: the contest's robot.
         postures: a Loco-data file.
-        locomotion: a LocoTra-data file; without either gait file: the sample gait of the contest's
-            robot.
+        locomotion: a LocoTra-data file. Without any of the three files a team keeps those with
+            which it holds the seat; else it gets the contest's robot with its sample gait.
         notify: called on Zenoh's thread when a frame has come; it must return at once.
         elsewhere: whether the player sees the frames elsewhere, such as on a page.
 

@@ -20,7 +20,7 @@ fail, as with a closed stream; messages to standard error are lost."""
 
 
 class OutputFailed(OSError):
-    """Raised when standard output can't be written."""
+    """Raised when standard output can't be written; a broken pipe raises `BrokenPipeError`."""
 
 
 def open_all() -> None:

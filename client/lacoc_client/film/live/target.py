@@ -1,5 +1,6 @@
 """Where a stream is written: a file, a folder or a video server, and in which format."""
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -36,14 +37,15 @@ class Target:
 
     @property
     def shown(self) -> str:
-        """The address as messages show it: without its last part, the stream's secret key."""
-        return f"{self.address.rpartition('/')[0]}/..." if self.is_remote else self.address
+        """The address as messages show it; of a server only its kind and name."""
+        return _without_key(self.address) if self.is_remote else self.address
 
 
 def target(wanted: str) -> Target:
     """Return the target that a user named for a live stream.
 
-    An older recording in a file of this name is kept under a numbered name.
+    An older recording in a file of this name is kept under a numbered name; an older .m3u8, which
+    lists the last seconds only, is written over.
 
     Args:
         wanted: an address that begins with rtmp://, rtmps://, srt://, tcp:// or udp://; a folder,
@@ -56,7 +58,7 @@ def target(wanted: str) -> Target:
     scheme, is_address, _ = wanted.partition("://")
     if is_address:
         if scheme not in _SERVERS:
-            raise UserError(say("stream.bad-target", target=wanted))
+            raise UserError(say("stream.bad-target", target=_without_key(wanted)))
         return Target(wanted, _SERVERS[scheme], {"rw_timeout": _SILENT_US}, is_remote=True)
     path = Path(wanted)
     is_new = not path.suffix and path.parent.is_dir()  # else the address lacks its beginning
@@ -73,3 +75,13 @@ def target(wanted: str) -> Target:
     form, options = _FORMATS[path.suffix]
     keep.make_room(path)
     return Target(str(path), form, options)
+
+
+def _without_key(address: str) -> str:
+    """Leave out of a server's address what may be secret: user, password, and all after the host.
+
+    Platforms have the stream's key in the path, in the query, or in both.
+    """
+    scheme, _, rest = address.partition("://")
+    host = re.split(r"[/?#]", rest, maxsplit=1)[0].rpartition("@")[2]
+    return f"{scheme}://{host}/..."

@@ -40,11 +40,11 @@ class ClassStudent(Student):
         self._last: Card | None = None
 
     def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
-        """Load the evidence and documents of this student from the class file.
+        """Load what this student did, the own table and the hashes of tokens from the class file.
 
         Args:
             evidence: the student's evidence, in the file's order.
-            documents: the student's documents.
+            documents: the student's own table, and the hashes of the student's tokens.
         """
         documents = list(documents)
         self.diary.begin((one.evidence for one in evidence), documents)

@@ -152,7 +152,10 @@ class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
 
 
 class Unplanned(Fact, frozen=True, kw_only=True, tag="unplanned"):
-    """A stage that is not drawn will not be played: it is in the contest file no more."""
+    """The plan of a stage that is not drawn is taken back.
+
+    The stage is in the contest file no more, or it stands elsewhere in it; then a new plan follows.
+    """
 
     stage: str
 

@@ -208,7 +208,7 @@ class LacocEnv(gymnasium.Env[Numbers, Any]):
         return painter.draw(match.physics, match.game, self.episode.frame.markers)
 
     def check(self, action: Any) -> None:
-        """Check that an episode has begun, and that the action space has an action.
+        """Check that an episode has begun (it may be over), and that the space has this action.
 
         Raises:
             UserError: if no episode has begun, or there is no such action.

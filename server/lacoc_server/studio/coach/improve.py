@@ -73,7 +73,10 @@ def improve(
 def _few(
     search: Search, matters: Sequence[Matter], rough: Score, most: int, is_over: IsOver
 ) -> Iterator[Improved]:
-    """Change one number after another, always the one that helps most; yield each better table."""
+    """Change one number after another, always the one that helps most; then tune each of them.
+
+    The best table so far is yielded after each round of trials.
+    """
     cells = [one.number for one in matters[:_FEW]]
     changed: list[int] = []
     while len(changed) < most:
