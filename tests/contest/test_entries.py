@@ -27,6 +27,7 @@ from lacoc_server.contest.league.facts import (
     Closed,
     Disqualified,
     Entered,
+    EntriesOpened,
     FilesChanged,
     Withdrawn,
     new,
@@ -315,6 +316,18 @@ def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
     assert [team.name for team in contest.teams] == ["Ann", "Bob", "Cy"]
     assert [fact.id for fact in contest.decisions] == [cup.facts[-2].id, last.id]
     assert sum(isinstance(fact, Closed) for fact in cup.facts) == 1
+
+
+def test_entries_that_were_opened_stay_open(cup: Cup) -> None:
+    """Also after a restart without the option; once they are closed, nothing opens them again."""
+    with FactStore(ContestFolder(cup.file).facts) as store:
+        assert not organiser.keep_open(store, False)
+        assert organiser.keep_open(store, True)
+        assert organiser.keep_open(store, False)
+        assert organiser.keep_open(store, True)
+        store.append(new(Closed))
+        assert organiser.keep_open(store, True)
+    assert [type(fact) for fact in cup.facts] == [EntriesOpened, Closed]
 
 
 def test_a_team_leaves_once(cup: Cup) -> None:

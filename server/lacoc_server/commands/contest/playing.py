@@ -125,8 +125,8 @@ def run(
         typer.Option(
             "--entries",
             help="First let teams enter on the page /enter, until you close entries on the page "
-            "/office. If the file has entries_close, they may enter until then also without this "
-            "option. Not with --headless.",
+            "/office; this holds after a restart too. If the file has entries_close, they may "
+            "enter until then also without this option. Not with --headless.",
         ),
     ] = False,
     until_over: Annotated[

@@ -24,6 +24,7 @@ from lacoc_server.contest.league.facts import (
     Disqualified,
     Drawn,
     Entered,
+    EntriesOpened,
     FilesChanged,
     Withdrawn,
     new,
@@ -370,6 +371,27 @@ def check_teams(where: ContestFolder, contest: Contest) -> None:
     """
     if contest.here < TEAMS_LEAST and not contest.stages:
         raise UserError(say("contest.few-teams", teams=contest.here, file=str(where.file)))
+
+
+def keep_open(store: FactStore, entering: bool) -> bool:
+    """Return whether teams may enter until the organiser closes entries.
+
+    A fact keeps this. So entries stay open after a restart, and at another machine.
+
+    Args:
+        store: the facts.
+        entering: whether the organiser wants that now.
+
+    Raises:
+        UserError: if the fact can't be written.
+    """
+
+    def opening(facts: Sequence[AnyFact]) -> list[AnyFact]:
+        known = any(isinstance(fact, EntriesOpened | Closed) for fact in facts)
+        return [] if known or not entering else [new(EntriesOpened)]
+
+    store.decide(opening)
+    return entering or any(isinstance(fact, EntriesOpened) for fact in store.facts())
 
 
 def close_in_time(where: ContestFolder, store: FactStore) -> None:

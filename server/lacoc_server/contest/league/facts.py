@@ -54,6 +54,10 @@ class Entered(Fact, frozen=True, kw_only=True, tag="entered"):
     """Why it entered after entries were closed; "" if they were open."""
 
 
+class EntriesOpened(Fact, frozen=True, kw_only=True, tag="opened"):
+    """Teams may enter until the organiser closes entries, or until the contest file's time."""
+
+
 class Closed(Fact, frozen=True, kw_only=True, tag="closed"):
     """Entries are closed: from now on teams enter, and files change, only with a reason."""
 
@@ -353,7 +357,7 @@ OfDecision = (
     | Voided
 )
 """Facts of decisions by people, most of them with a reason; no record can prove them."""
-OfTeam = Entered | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
+OfTeam = Entered | EntriesOpened | Closed | Withdrawn | Disqualified | Substituted | FilesChanged
 OfMatch = Called | Recalled | Played | Replaced | Replay | Voided | NoShow | Moved
 OfStage = Planned | Unplanned | Drawn | Undrawn | RoundDrawn
 OfDay = Paused | Resumed | Shifted | Unshifted | Announced

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
-from lacoc_server.contest.acts.organiser import prepare
+from lacoc_server.contest.acts.organiser import keep_open, prepare
 from lacoc_server.contest.desk.book import Book
 from lacoc_server.contest.desk.desk import Desk
 from lacoc_server.contest.desk.service import DeskService
@@ -100,8 +100,8 @@ def play_live(
         listen: where the gateway listens; None: this machine only.
         show: whether to open a browser.
         entering: whether teams may enter until the organiser closes entries, also if the contest
-            file has no time when entries close; False: the first stage is drawn at that time, or
-            at once if there is none.
+            file has no time when entries close; it holds for later calls too. False: the first
+            stage is drawn at that time, or at once if there is none.
         until_over: whether to end soon after the contest is over; False: courts, pages and office
             stay until somebody interrupts them.
 
@@ -130,6 +130,7 @@ def play_live(
             sealing = Sealing(secrets.standby)
             stack.enter_context(Lookout(tenure, sealing))
             tenure.check()
+        entering = keep_open(store, entering)
         draw_from_ms = where.contest.closes_ms or (None if entering else 0)
         is_open = draw_from_ms is None or draw_from_ms > time.time_ns() // 1_000_000
         prepare(where, store, entering=entering or is_open)
