@@ -7,7 +7,7 @@ RUN := $(BIN)/python -m
 PIP := $(RUN) pip --disable-pip-version-check --quiet
 ARGS ?=
 # Processes that share the tests: more than the two cores, because a test often waits.
-WORKERS ?= 5
+WORKERS ?= 4
 # A test that fails runs once more: the summary names it, and what a busy machine decided is mended.
 PYTEST := $(RUN) pytest --numprocesses $(WORKERS) --dist worksteal --reruns 1 -raR
 

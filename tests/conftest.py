@@ -39,7 +39,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out tests marked long, unless --long is given; begin with those that take minutes."""
+    """Leave out tests marked long, unless --long is given; begin with those that take long."""
     long = {item for item in items if item.get_closest_marker("long")}
     others = set() if config.getoption("long") else long
     config.hook.pytest_deselected(items=[item for item in items if item in others])
@@ -55,7 +55,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
 
 
 def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
-    """Return the tests reordered: each process begins with its share of those that take minutes.
+    """Return the tests reordered: each process begins with its share of those that take long.
 
     Args:
         items: the tests, in the order of their files.
@@ -69,6 +69,6 @@ def spread(items: list[pytest.Item], processes: int) -> list[pytest.Item]:
 
 
 def minutes(item: pytest.Item) -> float:
-    """Return how many minutes a test takes, as its mark `long(minutes=...)` says; else 0."""
-    mark = item.get_closest_marker("long")
-    return float(mark.kwargs.get("minutes", 0)) if mark else 0.0
+    """Return how many minutes a test takes, as its mark `long` or `slow` says; else 0."""
+    marks = filter(None, map(item.get_closest_marker, ("long", "slow")))
+    return max((float(mark.kwargs.get("minutes", 0)) for mark in marks), default=0.0)

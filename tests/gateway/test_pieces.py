@@ -140,8 +140,7 @@ def ask(venue: Venue, path: str) -> tuple[int, Message, bytes]:
     "picture",
     [
         "court/main",
-        "director",
-        *(pytest.param(one, marks=pytest.mark.long) for one in ("court", "aside")),
+        *(pytest.param(one, marks=pytest.mark.long) for one in ("court", "director", "aside")),
     ],
 )
 def test_a_gateway_serves_pieces(open_venue: Venue, picture: str) -> None:

@@ -204,7 +204,7 @@ def test_a_tie_break_is_explained_where_it_stands(cup: Cup, open_page: OpenPage)
     expect(page.locator("[popover]")).to_contain_text("Direct comparison")
 
 
-@pytest.mark.parametrize("locale", ["en-GB", "ja-JP"])
+@pytest.mark.parametrize("locale", ["en-GB", pytest.param("ja-JP", marks=pytest.mark.long)])
 def test_a_phone_and_axe(cup: Cup, open_page: OpenPage, locale: str) -> None:
     """Only tables and brackets scroll sideways on a phone; axe-core finds no serious mistake."""
     pytest.importorskip("axe_core_python")

@@ -20,6 +20,7 @@ EDITED = [case for case in CASES if case.name == "design_shared.test.mjs"]
 """Cases in which the environment says how often four pages edit one table."""
 
 
+@pytest.mark.slow(minutes=0.2)
 @pytest.mark.parametrize(
     ("cases", "edits"),
     [(CASES, 200), pytest.param(EDITED, 1000, marks=pytest.mark.long(minutes=1))],

@@ -85,6 +85,7 @@ settings.match.countdown_s = 0.5
         yield Place(pages, opened["office"], links, inner)
 
 
+@pytest.mark.slow(minutes=0.4)
 @pytest.mark.parametrize(
     "how",
     [

@@ -395,6 +395,7 @@ def test_a_contestant_tests_the_link_before_a_match(venue: Venue, sit: Sit) -> N
     page.misses("button:has-text('Test my connection')")
 
 
+@pytest.mark.slow(minutes=0.4)
 def test_keys_drive_the_robot(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """A contestant plays by the page's keys, from the lobby to Pos-data.txt (workshop 5-4)."""
     page = seated(venue, sit, "--seconds", "120")
