@@ -44,8 +44,8 @@ class ArenaCode(NamedTuple):
                 marker is wrong.
 
         Raises:
-            UserError: if the function raises anything else; the error has the line of the arena's
-                code.
+            UserError: if the function raises anything else. Unless it is a UserError of its own, it
+                has the line of the arena's code, if there is one.
             ValueError: if the function raises it and `refuses` is true.
         """
         try:

@@ -119,10 +119,10 @@ class Programme:
         return None if late is None else late.audience
 
     def others(self, can_act: bool, but: Viewer | None = None) -> int:
-        """Count the pages that follow the director: those that may act, or those that only watch.
+        """Count those who follow the director: pages that may play or referee, or all others.
 
         Args:
-            can_act: which of the two to count.
+            can_act: whether to count those that may play or referee.
             but: a page that is not counted.
         """
         return sum(late.audience.others(can_act, but) for late in list(self._late.values()))

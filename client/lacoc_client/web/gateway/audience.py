@@ -46,10 +46,10 @@ class Audience:
             self._gone.dropped += viewer.frames.dropped
 
     def others(self, can_act: bool, but: Viewer | None = None) -> int:
-        """Count the pages of one kind: those that may act, or those that only watch.
+        """Count the pages of one kind: those that may play or referee, or those that only watch.
 
         Args:
-            can_act: which of the two to count.
+            can_act: whether to count those that may play or referee.
             but: a page that is not counted.
         """
         places = (one for one in self._viewers if one.is_page and one is not but)

@@ -1,4 +1,4 @@
-"""Files that a gateway serves: the built pages, and the sheet of a contest."""
+"""Files that a gateway serves: built pages, a contest's sheet, pieces of a match, JSON."""
 
 import gzip
 import hashlib

@@ -95,7 +95,7 @@ def stem(source: ForkSource, beat: int, match_id: str, changes: ForkChanges | No
         changes: how the fork differs, to be written in its record; None: nothing is written of it.
 
     Raises:
-        UserError: if the record has no such beat.
+        UserError: if it is neither a beat of the record nor the one after the last.
     """
     first, last = 1, source.last_beat + 1
     if not first <= beat <= last:
