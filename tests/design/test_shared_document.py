@@ -2,6 +2,7 @@
 
 import asyncio
 import random
+from functools import partial
 from typing import Any
 
 import msgspec
@@ -14,6 +15,7 @@ from pycrdt import Array, Doc, Map
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
@@ -279,6 +281,29 @@ def test_a_flood_at_one_table_is_refused() -> None:
         assert refused > 100
 
     run_async(flood)
+
+
+def test_a_whole_table_comes_at_once_and_a_larger_one_is_refused_in_words() -> None:
+    """A page may put in 8,000 entries and name them all; it is told if a table has more."""
+
+    async def begin(postures: int) -> None:
+        table = SharedTable("", keep_nothing)
+        viewer = Viewer(Wire())
+        table.add(viewer, "")
+        page = PageTable(table.opened())
+        rows = [f"l6/{key}.{posture}" for key in range(10) for posture in range(postures)]
+        cells = {f"{row}/{col}": col / 7 for row in rows for col in range(18)}
+        asked = page.put({"shape": "l6", **dict.fromkeys(rows, True), **cells})
+        assert len(asked["cells"]) == len(cells)
+        assert requests.read(msgspec.msgpack.encode({"id": 1, "do": "table", **asked}))
+        await table.take(viewer, TableUpdate(**asked))
+        assert PageTable(table.opened()).entries == page.entries
+
+    run_async(partial(begin, 42))
+    for postures in (43, 100):
+        with pytest.raises(UserError) as refused:
+            run_async(partial(begin, postures))
+        assert refused.value.phrase.code == "tables.too-large"
 
 
 def number(value: int) -> bytes:

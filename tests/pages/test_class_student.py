@@ -186,6 +186,38 @@ def test_goes_on_after_the_gateway_was_killed(
 
 
 @pytest.mark.long
+def test_the_next_student_at_a_page_gets_nothing_of_the_last(
+    open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
+) -> None:
+    """Another class begins at the same address: whoever enters at a page left open begins anew."""
+    console.expect_a_break()
+    room = ClassRoom(tmp_path / "one")
+    page = Pupil(open_page, room.url)
+    page.joins(room, "Ada")
+    page.changes("33")
+    room.close()
+    page.sees(".banner")
+    page.go(0, 1)
+    page.type("34")
+    again = ClassRoom(tmp_path / "two", room.listen)
+    try:
+        page.sees(".join form")
+        page.page.fill(".join input >> nth=0", again.code)
+        page.page.fill(".join input >> nth=1", "Ben")
+        page.press("Enter")
+        page.is_in("Ben")
+        page.cell_is(0, 0, "45")  # the posture of a new table
+        page.changes("21")
+        own = json.loads(page.page.evaluate("localStorage.getItem('lacoc.class')"))
+        other = again.student("Ben", own["token"])
+        first = other.shared.table["rows"][0]["angles_deg"]
+        other.close()
+        assert first[:2] == [21.0, 0.0]
+    finally:
+        again.close()
+
+
+@pytest.mark.long
 def test_alone_changes_come_back_after_a_kill(
     open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
 ) -> None:

@@ -78,6 +78,30 @@ def test_two_windows_at_one_folder_lose_nothing(
         one.cell_is(3, 3, "33")
 
 
+@pytest.mark.long
+def test_a_table_that_is_too_large_stays_on_its_page(
+    open_page: OpenPage, tmp_path: Path, built_pages: Path, console: Any
+) -> None:
+    """The page says so once, and goes on."""
+    console.expect_a_break()
+    row = "\t".join(["0"] * 18) + "\n"
+    (tmp_path / "LocoTra-data.txt").write_text("10\n" + ("45\n" + row * 45) * 10)
+    sent: list[int] = []
+    with OwnPage(tmp_path, "design") as own:
+        page = Designer(open_page, own.url)
+        page.page.on(
+            "websocket", lambda it: it.on("framesent", lambda data: sent.append(len(data)))
+        )
+        page.begin(own.key)
+        page.is_toasted("too many rows")
+        page.go(0, 0)
+        page.type("12")
+        page.tries()
+        page.tries()
+        page.cell_is(0, 0, "12")
+        assert sum(size > 100_000 for size in sent) == 1
+
+
 @pytest.fixture
 def room(tmp_path: Path, built_pages: Path) -> Iterator[ClassRoom]:
     """Give a class."""

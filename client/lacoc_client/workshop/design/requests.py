@@ -9,6 +9,7 @@ from lacoc_client.workshop.design.saving.robot_edit import AnyEntry
 from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.evidence import LESSON_STEPS, By
 from lacoc_client.workshop.phases.facts import FootWay, Pace, Way
+from lacoc_client.workshop.tables.entries import ENTRIES_MOST
 from lacoc_shared.gait.cells import MAX_KEYS, MAX_POSTURES_PER_KEY
 from lacoc_shared.gait.workbook.content import MAX_BYTES
 from lacoc_shared.messages import SentFile
@@ -16,15 +17,16 @@ from lacoc_shared.studio import STUDIO_MAX_BYTES
 from lacoc_shared.words import say
 
 REQUEST_BYTES = STUDIO_MAX_BYTES
-"""Longest request [bytes], except for `parse`; a longer request is refused."""
+"""Longest request [bytes], except for those of `_LONGER`; a longer request is refused."""
 PARSE_BYTES = MAX_BYTES + 4096
 """Longest `parse` request [bytes]: it may contain the largest workbook that can be read."""
 MESSAGE_BYTES = 16 << 20
 """Longest message [bytes]; a longer one closes the connection."""
 
-UPDATE_BYTES = 96 << 10
-"""Longest update of a table [bytes]."""
-_MOST_CELLS = 4096
+_LONGER = {"parse": PARSE_BYTES, "table": 1 << 20}
+"""Longest requests [bytes] of other kinds. A table that is too large to be shared must be readable,
+so that the page is told why it is refused."""
+_MOST_CELLS = 4 * ENTRIES_MOST
 _T = TypeVar("_T")
 Name = Annotated[str, msgspec.Meta(max_length=200)]
 _PhaseNumber = Annotated[int, msgspec.Meta(ge=0, le=6)]
@@ -130,7 +132,7 @@ class TableAsk(Ask, frozen=True, kw_only=True, tag="table"):
     """Id of the table; "": the student's own table."""
     epoch: Name
     """The epoch of the table for which the change was made."""
-    update: Annotated[bytes, msgspec.Meta(max_length=UPDATE_BYTES)]
+    update: bytes
     """The changes, in the format of Yjs."""
     cells: Annotated[tuple[Name, ...], msgspec.Meta(max_length=_MOST_CELLS)] = ()
     """Names of the cells into which somebody typed."""
@@ -343,7 +345,7 @@ def read_with(decoder: msgspec.msgpack.Decoder[_T], data: bytes) -> _T:
     """
     try:
         if len(data) > REQUEST_BYTES:
-            most = PARSE_BYTES if do_of(data) == "parse" else REQUEST_BYTES
+            most = _LONGER.get(do_of(data), REQUEST_BYTES)
             if len(data) > most:
                 raise too_long(len(data), most)
         return decoder.decode(data)

@@ -14,6 +14,8 @@ from lacoc_client.workshop.tables.update import ROOT, Unfit, read_known, read_up
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
+UPDATE_BYTES = 256 << 10
+"""Longest update of a page [bytes]; one can have a whole table of `ENTRIES_MOST`."""
 STATE_BYTES = 512 << 10
 """Longest state of a document [bytes]; an update that makes it longer is refused."""
 COMPACT_BYTES = 48 << 10

@@ -10,7 +10,7 @@ import msgspec
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import MessageKind
-from lacoc_client.workshop.tables.document import TableDocument, document_of
+from lacoc_client.workshop.tables.document import UPDATE_BYTES, TableDocument, document_of
 from lacoc_client.workshop.tables.draft import Draft, draft_of
 from lacoc_client.workshop.tables.entries import Entry, without_proposals
 from lacoc_shared.contest.tokens import new_token
@@ -157,6 +157,8 @@ class SharedTable:
             raise UserError(say("tables.older"))
         if told.begins and self._document.entries:
             raise UserError(say("tables.older"))  # another page was quicker
+        if len(told.update) > UPDATE_BYTES:
+            raise UserError(say("tables.too-large"))
         now_s = time.monotonic()
         cost = 1 + len(self._document.entries) // _COST_ENTRIES
         if self._allowance.left(now_s) < cost:

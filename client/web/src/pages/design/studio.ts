@@ -59,7 +59,7 @@ export class Studio {
   );
   readonly learning: Learning = new Learning(
     this.gateway,
-    () => sentGait(this.sheet, this.robot),
+    (table) => sentGait(this.sheet, this.robot, table),
     () => this.sheet.table.peek(),
   );
   readonly trials: Trials = new Trials(
@@ -131,8 +131,12 @@ export class Studio {
     }
     const before = this.greeting?.student;
     this.membership.entered(greeting);
-    // What is on the page is somebody else's.
-    if (before !== undefined && before !== greeting.student) location.reload();
+    if (before !== undefined && before !== greeting.student) {
+      // What is on the page is somebody else's: nothing of it may go out.
+      this.gateway.end();
+      location.reload();
+      return;
+    }
     const { student, table, earned } = greeting;
     this.sharing.greet(table);
     this.people.greet();

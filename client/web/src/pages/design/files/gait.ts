@@ -14,9 +14,12 @@ export interface SentGait {
   sequences: number[][] | null;
 }
 
-/** The table as it is now; null while a cell has no angle. */
-export function sentGait(sheet: Sheet, robot: RobotInUse): SentGait | null {
-  const table = sheet.table.peek();
+/** A table, such as the one that is there now; null while a cell has no angle. */
+export function sentGait(
+  sheet: Sheet,
+  robot: RobotInUse,
+  table = sheet.table.peek(),
+): SentGait | null {
   const wire = table && toWire(table);
   return wire && { table: wire, robot: robot.sent(), sequences: digitsOf(table) };
 }

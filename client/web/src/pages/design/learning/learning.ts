@@ -1,7 +1,7 @@
 /** The phases: how far the student is, and what is sent as evidence (workshop 3-1, 4-2). */
 
 import { signal } from "@preact/signals";
-import { Unanswered } from "../../../core/connection";
+import { Refused, Unanswered } from "../../../core/connection";
 import { changesBetween } from "../../../core/design/rebase";
 import { mapRows, type Table, toWire, withCells, wrongOf } from "../../../core/design/table";
 import type { AnswerReply, FileTable, Judged, Phases } from "../../../core/wire";
@@ -11,6 +11,7 @@ import type { By } from "../table/sheet";
 
 /** Edits of the same kind within this time are told as one. */
 const TELL_MS = 250;
+const ASK_AGAIN_MS = 2000;
 
 /** The phase after which the sample gait is the reward. */
 const REWARDED = 4;
@@ -55,24 +56,26 @@ export class Learning {
   /** The table without what is untold; others' changes are in it. null: none is there yet. */
   private before: Table | null = null;
   /** Edits whose reply is not there yet, in order. */
-  private readonly asked = new Set<ToldEdit>();
+  private readonly asked: ToldEdit[] = [];
+  /** Ends when the gateway has all of them, or is away. */
+  private asking: Promise<void> | null = null;
   private greeted = false;
 
   /**
-   * @param gait The table as it is now; null while a cell has no angle.
+   * @param gait The table as it is now, or another one; null while a cell has no angle.
    * @param table The table as it is now.
    */
   constructor(
     private readonly gateway: Gateway,
-    readonly gait: () => SentGait | null,
+    readonly gait: (table?: Table) => SentGait | null,
     private readonly table: () => Table | null,
   ) {}
 
   /** The gateway knows this page and its student, and may take evidence. */
   greet(): void {
     this.greeted = true;
-    for (const edit of this.asked) this.ask(edit);
     this.tell();
+    this.ask();
   }
 
   /** Take in that others have changed the table: that is no edit of this student. */
@@ -96,7 +99,7 @@ export class Learning {
     what: "phase" | "answer" | "name" | "vote" | "check" | "hand",
     fields: object,
   ): Promise<T | null> {
-    this.tell();
+    await this.told();
     try {
       return await this.gateway.ask<T>(what, fields);
     } catch (error) {
@@ -107,13 +110,17 @@ export class Learning {
 
   /** Tell the gateway of an edit, after a moment in which more of the same kind may come. */
   edited(by: By, size: string | null = null): void {
-    // What could not be told yet, because a cell has no angle, is told with what comes now.
-    const first = this.untold ?? (by && { by, size });
-    if (this.untold) clearTimeout(this.untold.timer);
-    if (!first || !this.before) {
+    const { untold } = this;
+    if (untold) clearTimeout(untold.timer);
+    if (!by || !this.before) {
+      this.untold = null;
       this.before = this.table();
+      this.settle();
       return;
     }
+    // What could not be told yet, because a cell has no angle, is told with what comes now. It is
+    // typed only if both are.
+    const first = untold && untold.by !== "hand" ? untold : { by, size };
     const timer = window.setTimeout(() => this.tell(), TELL_MS);
     this.untold = { by: first.by, size: first.size, timer };
     this.isTold.value = false;
@@ -122,42 +129,65 @@ export class Learning {
   /**
    * Tell the gateway of the edits that it does not know yet.
    *
+   * A cell without an angle counts with the angle that it had, until it has another one.
+   *
    * @param butBy Edits made in this way may wait.
    */
   tell(butBy?: By): void {
     const { untold } = this;
     if (!untold || untold.by === butBy || !this.greeted) return;
-    const gait = this.gait();
-    const now = this.table();
-    if (!gait || !now || !this.before) return;
+    const table = this.table();
+    if (!table || !this.before) return;
+    const now = filled(table, this.before);
+    const gait = this.gait(now);
+    if (!gait) return;
+    const before = toWire(filled(this.before, now)) ?? gait.table;
+    const isSame = JSON.stringify(before) === JSON.stringify(gait.table);
+    if (isSame && !toWire(table)) return; // the next angle belongs to this edit
     clearTimeout(untold.timer);
     this.untold = null;
-    const before = toWire(filled(this.before, now)) ?? gait.table;
     this.before = now;
-    const guess = untold.by === "hand" ? this.footGuess.peek() : null;
-    if (guess) this.footGuess.value = null;
-    const edit = { ...gait, before, by: untold.by, size: untold.size, guess };
-    this.asked.add(edit);
-    this.ask(edit);
+    if (!isSame) {
+      const guess = untold.by === "hand" ? this.footGuess.peek() : null;
+      if (guess) this.footGuess.value = null;
+      this.asked.push({ ...gait, before, by: untold.by, size: untold.size, guess });
+      this.ask();
+    }
+    this.settle();
   }
 
-  private ask(edit: ToldEdit): void {
-    this.gateway.ask<{ guess: Judged | null }>("edit", edit).then(
-      (reply) => {
+  /** Tell the gateway of all edits; ends when it has them, or is away. */
+  async told(): Promise<void> {
+    this.tell();
+    await this.asking;
+  }
+
+  private ask(): void {
+    if (!this.asking && this.asked.length) this.asking = this.askAll();
+  }
+
+  /** Ask one after another: the gateway refuses a request while too many others are open. */
+  private async askAll(): Promise<void> {
+    for (let edit = this.asked[0]; edit; edit = this.asked[0]) {
+      try {
+        const reply = await this.gateway.ask<{ guess: Judged | null }>("edit", edit);
         if (edit.guess) this.judged.value = reply.guess;
-        this.settle(edit);
-      },
-      (error: unknown) => {
+      } catch (error) {
         // Without an answer it is told again by the next connection.
-        const isLost = error instanceof Unanswered || !this.gateway.state.peek().open;
-        if (!isLost) this.settle(edit);
-      },
-    );
+        if (error instanceof Unanswered || !this.gateway.state.peek().open) break;
+        if (error instanceof Refused && error.why.code === "gateway.too-much") {
+          await new Promise((resolve) => setTimeout(resolve, ASK_AGAIN_MS));
+          continue;
+        }
+      }
+      this.asked.shift();
+      this.settle();
+    }
+    this.asking = null;
   }
 
-  private settle(edit: ToldEdit): void {
-    this.asked.delete(edit);
-    this.isTold.value = !this.untold && !this.asked.size;
+  private settle(): void {
+    this.isTold.value = !this.untold && !this.asked.length;
   }
 }
 

@@ -44,6 +44,10 @@ export class Sharing {
   private seen = 0;
   /** Whether what is on the page goes into the document. */
   private readonly isOn = signal(false);
+  /** Whether nobody could take what this page did last. */
+  private isRefused = false;
+  /** A table of so many rows, or more, stays on this page. */
+  private mostRows = Number.POSITIVE_INFINITY;
   /** Whether the first things are being opened into an empty table. */
   private begins = false;
   /** The robot that others have chosen, until it is read. */
@@ -85,7 +89,7 @@ export class Sharing {
   ) {
     effect(() => {
       const content = this.local.value;
-      if (this.isOn.value && content) this.shared.write(content);
+      if (this.isOn.value && content && this.mayHave(content)) this.shared.write(content);
     });
   }
 
@@ -97,7 +101,8 @@ export class Sharing {
   /** The gateway has let the page in, for the first time or again. */
   greet(opened: OpenedTable): void {
     const isOther = this.name !== null && this.name !== opened.table;
-    const isAhead = !opened.state.length && !this.shared.isEmpty && !isOther;
+    const isNew = !opened.state.length && !this.shared.isEmpty && !isOther;
+    const isAhead = isNew && !this.isRefused;
     this.outbox.returned();
     const isLate = this.outbox.begins && opened.state.length > 0;
     if (this.name === null || isLate || (this.epoch !== opened.epoch && !isAhead)) {
@@ -174,8 +179,21 @@ export class Sharing {
     if (content) this.show(rows, isOther);
     else {
       const local = this.local.peek();
-      if (local) this.shared.write(local);
+      if (local && this.isRefused) this.mostRows = local.rows.length;
+      else if (local && this.mayHave(local)) this.shared.write(local);
     }
+    this.isRefused = false;
+  }
+
+  /** Whether the document may have this content. */
+  private mayHave({ rows }: Content): boolean {
+    return rows.length < this.mostRows;
+  }
+
+  /** Whether the gateway has all of the page's table. */
+  private get hasAll(): boolean {
+    const local = this.local.peek();
+    return this.outbox.isEmpty && (!local || this.mayHave(local));
   }
 
   /** A document; its updates go out. */
@@ -194,7 +212,7 @@ export class Sharing {
     clearTimeout(this.timer);
     const parcel = this.name === null ? null : this.outbox.next(this.seen);
     if (!parcel) {
-      this.isKept.value = this.outbox.isEmpty;
+      this.isKept.value = this.hasAll;
       return;
     }
     this.isKept.value = false;
@@ -208,7 +226,7 @@ export class Sharing {
         if (epoch !== this.epoch) return;
         this.outbox.confirmed();
         const rest = Math.max(0, sentMs + PACE_MS - performance.now());
-        this.isKept.value = this.outbox.isEmpty;
+        this.isKept.value = this.hasAll;
         this.timer = window.setTimeout(() => this.send(), rest);
       },
       (error: unknown) => {
@@ -219,9 +237,11 @@ export class Sharing {
           this.timer = window.setTimeout(() => this.send(), READ_AGAIN_MS);
           return;
         }
-        // Nobody can take it: this page goes on with what all others have.
+        // Nobody can take it: this page goes on with what all others have. If they have nothing,
+        // the table stays here.
         if ((error as Refused).why.code !== "tables.older") {
           this.outbox.clear();
+          this.isRefused = true;
           this.gateway.refuse(error);
         }
         this.epoch = "";

@@ -98,7 +98,7 @@ export class Trials {
     gateway.trouble.value = null;
     const version = sheet.version.peek();
     try {
-      this.learning.tell();
+      await this.learning.told();
       const reply = await gateway.ask<TrialReply>("trial", {
         ...gait,
         keys: pose ? pose.keys : String(key),
