@@ -14,6 +14,7 @@ from pycrdt import Array, Doc, Map
 
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
+from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
@@ -92,6 +93,19 @@ def test_a_draft_is_the_table_with_its_keys_and_robot() -> None:
     found = draft_of(gaps)
     assert found is not None
     assert [(row.key, row.posture) for row in found.table.rows] == [(0, 0), (1, 0), (1, 1)]
+
+
+def test_a_table_with_more_rows_than_a_key_may_have_is_no_draft() -> None:
+    """A hundred rows of a key are one; with one more, nobody could read the table again."""
+    entries: dict[str, Entry] = {"shape": "l1"}
+    for rank in range(100):
+        entries |= {f"l1/0.0_{rank}1": True}
+        entries |= {f"l1/0.0_{rank}1/{col}": 1.0 for col in range(3)}
+    draft = draft_of(entries)
+    assert draft is not None
+    assert msgspec.json.decode(msgspec.json.encode(draft.table), type=FileTable) == draft.table
+    more = {name.replace("0.0_01", "0.99"): value for name, value in entries.items()}
+    assert draft_of({**entries, **more}) is None
 
 
 def test_what_somebody_proposed_can_be_removed() -> None:

@@ -52,7 +52,10 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
-    """Return a document's table, keys and robot; None: it has no rows, or a cell has no angle."""
+    """Return a document's table, keys and robot.
+
+    None: it has no rows, a cell has no angle, or it has more rows than a `FileTable` may have.
+    """
     table = _table(entries)
     if table is None:
         return None
@@ -127,7 +130,12 @@ def _table(entries: Mapping[str, Entry]) -> FileTable | None:
     if not rows:
         return None
     numbered = _numbered(rows) if kind == "locomotion" else tuple(rows)
-    return FileTable(kind=kind, legs=legs, rows=numbered)
+    table = FileTable(kind=kind, legs=legs, rows=numbered)
+    try:
+        # Nobody could decode a table beyond its limits, also not the class at its next start.
+        return msgspec.convert(msgspec.to_builtins(table), FileTable)
+    except msgspec.ValidationError:
+        return None
 
 
 def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
