@@ -126,9 +126,23 @@ WRONG: list[dict[str, Any]] = [
     {"p6/1.0/1?": 5.0},
     {"shape": "q6"},
     {"robot": "x" * 40_001},
+    {"robot": '{"name":5,"text":"x"}'},
+    {"robot": '{"name":' + "[" * 39_000},
+    {"file": "null"},
+    {"file": '{"name":"a.txt","version":"1","digest":""}'},
     {"p6/1.0/1": Map({"a": 1.0})},
     {"p6/1.0/1": Array([1.0])},
 ]
+
+
+def test_what_a_page_writes_of_its_files_is_taken() -> None:
+    """Texts that name no file, too."""
+    document = document_of(standing())
+    file = '{"name":"a.txt","version":"1","digest":"","robotVersion":%s}'
+    changes = [{"file": file % version} for version in ("null", '"7"')]
+    changes += [{"robot": '{"name":"a.toml","text":"[body]"}'}, {"robot": "", "file": ""}]
+    for change in changes:
+        assert document.merge(page_of(document).put(change)["update"])
 
 
 @pytest.mark.parametrize("entries", WRONG, ids=lambda one: str(one)[:40])
