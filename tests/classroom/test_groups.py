@@ -301,6 +301,30 @@ def test_a_program_that_ended_halfway_leaves_no_ghosts(tmp_path: Path) -> None:
     run_async(end)
 
 
+def test_settings_that_can_not_be_read_are_kept_with_all_groups_tables(tmp_path: Path) -> None:
+    """The class begins with new settings; the old ones and the tables of groups stay."""
+    unread = Document("", "class", "", 5.0, b'{"code":"ABC","key":"k","groups":7}')
+
+    async def owners_of(*names: str) -> set[str]:
+        async with class_of(tmp_path, *names) as room:
+            for student in room.students.values():
+                await room.groups.join(student, "Ants")
+            kept = await room.documents()
+            assert [one.content for one in kept if one.at_s == 5.0] == [unread.content]
+            return {one.student for one in kept if one.student[:6] == OF_GROUP}
+
+    async def begin() -> None:
+        file = ClassFile(tmp_path / CLASS_FILE)
+        file.write_documents([unread, Document(OF_GROUP + "old", "table", "", 0.0, b"")])
+        file.close()
+        assert await owners_of() == {OF_GROUP + "old"}
+        owners = await owners_of("Ann")
+        assert len(owners) == 2
+        assert await owners_of() == owners
+
+    run_async(begin)
+
+
 def test_a_class_of_an_earlier_version_goes_on(tmp_path: Path) -> None:
     """Its drafts are tables, and the next table that is handed out is the newest."""
     table = {"kind": "postures", "legs": 1, "rows": [{"key": 0, "angles_deg": [1.0, 2.0, 3.0]}]}

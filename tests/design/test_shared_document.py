@@ -16,6 +16,7 @@ from pycrdt import Array, Doc, Map
 from lacoc_client.web.gateway import wire
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.workshop.design import requests
+from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document
 from lacoc_client.workshop.tables import document as documents
 from lacoc_client.workshop.tables.document import TableDocument, document_of
@@ -96,6 +97,19 @@ def test_a_draft_is_the_table_with_its_keys_and_robot() -> None:
     assert [(row.key, row.posture) for row in found.table.rows] == [(0, 0), (1, 0), (1, 1)]
 
 
+def test_a_table_with_more_rows_than_a_key_may_have_is_no_draft() -> None:
+    """A hundred rows of a key are one; with one more, nobody could read the table again."""
+    entries: dict[str, Entry] = {"shape": "l1"}
+    for rank in range(100):
+        entries |= {f"l1/0.0_{rank}1": True}
+        entries |= {f"l1/0.0_{rank}1/{col}": 1.0 for col in range(3)}
+    draft = draft_of(entries)
+    assert draft is not None
+    assert msgspec.json.decode(msgspec.json.encode(draft.table), type=FileTable) == draft.table
+    more = {name.replace("0.0_01", "0.99"): value for name, value in entries.items()}
+    assert draft_of({**entries, **more}) is None
+
+
 def test_what_somebody_proposed_can_be_removed() -> None:
     """Only the proposals of this person go."""
     kept: dict[str, Entry] = {**standing(1), "p6/0.0/1?": '{"text":"4","by":"Ben"}'}
@@ -114,9 +128,23 @@ WRONG: list[dict[str, Any]] = [
     {"p6/1.0/1?": 5.0},
     {"shape": "q6"},
     {"robot": "x" * 40_001},
+    {"robot": '{"name":5,"text":"x"}'},
+    {"robot": '{"name":' + "[" * 39_000},
+    {"file": "null"},
+    {"file": '{"name":"a.txt","version":"1","digest":""}'},
     {"p6/1.0/1": Map({"a": 1.0})},
     {"p6/1.0/1": Array([1.0])},
 ]
+
+
+def test_what_a_page_writes_of_its_files_is_taken() -> None:
+    """Texts that name no file, too."""
+    document = document_of(standing())
+    file = '{"name":"a.txt","version":"1","digest":"","robotVersion":%s}'
+    changes = [{"file": file % version} for version in ("null", '"7"')]
+    changes += [{"robot": '{"name":"a.toml","text":"[body]"}'}, {"robot": "", "file": ""}]
+    for change in changes:
+        assert document.merge(page_of(document).put(change)["update"])
 
 
 @pytest.mark.parametrize("entries", WRONG, ids=lambda one: str(one)[:40])

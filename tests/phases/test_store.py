@@ -5,6 +5,7 @@ import io
 import sqlite3
 import subprocess
 import sys
+import time
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -21,6 +22,7 @@ from lacoc_client.workshop.phases.evidence import (
     JoinedClass,
     LegEdit,
     Named,
+    Voted,
 )
 from lacoc_client.workshop.phases.export import evidence_csv, tables_zip
 from lacoc_client.workshop.phases.store import ClassStore
@@ -226,16 +228,46 @@ store.close()
 
 @pytest.mark.slow
 def test_a_full_disk_is_told_and_loses_nothing(path: Path) -> None:
-    """On a full disk new evidence fails with an error; when there is room again, all goes on."""
+    """New evidence fails with an error; when there is room again, it is written first."""
     done = subprocess.run(
         [sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True
     )
 
-    assert done.stdout.splitlines() == ["database.no-room database.no-room", "2 None"]
+    assert done.stdout.splitlines() == ["database.no-room database.no-room", "3 None"]
     with ClassStore(path) as store:
         hands = [one.evidence for one in store.evidence().result()]
-        assert hands == [Hand(up=True), Hand(up=True)]
+        assert hands == [Hand(up=True), Hand(up=False), Hand(up=True)]
         assert [one.version for one in store.documents()] == ["1"]
+
+
+def test_the_trouble_goes_when_all_that_waited_is_written(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not before; a student who is forgotten meanwhile leaves nothing that waits."""
+    monkeypatch.setattr("lacoc_client.workshop.phases.store.DOCUMENT_S", 0.05)
+
+    def full(*_: object) -> int:
+        error = sqlite3.OperationalError("database or disk is full")
+        error.sqlite_errorcode = sqlite3.SQLITE_FULL
+        raise error
+
+    with ClassStore(path) as store:
+        with monkeypatch.context() as patch:
+            patch.setattr(ClassFile, "_add", full)
+            works = [store.add("Ada", EDIT, 1.0), store.vote("Ada", "calm", "A", 2.0)]
+            works += [store.add(who, GUESS, 3.0) for who in ("Bob", "Ada")]
+            assert all(isinstance(work.exception(), UserError) for work in works)
+            store.write(table("Ada", "1")).result()
+            store.forget("Bob").result()
+            assert store.trouble is not None
+        deadline_s = time.monotonic() + 10.0
+        while store.trouble is not None and time.monotonic() < deadline_s:
+            time.sleep(0.01)
+        assert store.trouble is None
+        kept = store.evidence().result()
+        assert [(one.student, one.at_s) for one in kept] == [("Ada", at) for at in (1.0, 2.0, 3.0)]
+        assert [one.evidence for one in kept] == [EDIT, Voted(poll="calm"), GUESS]
+        assert store.votes("calm").result() == {"A": 1}
 
 
 def test_another_programs_database_is_left_alone(path: Path) -> None:

@@ -18,10 +18,12 @@ from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
 from lacoc_client.workshop.classroom.groups.groups import Groups
 from lacoc_client.workshop.classroom.groups.handed import Handed
 from lacoc_client.workshop.classroom.state import (
+    NAME,
     NOBODY,
     ClassState,
     fresh_state,
     read_state,
+    unread_state,
 )
 from lacoc_client.workshop.classroom.teacher.news import (
     Trouble,
@@ -127,10 +129,19 @@ class Classroom:
         kept = await asyncio.wrap_future(store.evidence())
         evidence = _by_student(kept)
         documents = _by_student(store.documents())
-        for document in documents.pop(NOBODY, []):
-            self.state = read_state(document) or self.state
+        of_class = {one.name: one for one in documents.pop(NOBODY, [])}
+        if (settings := of_class.pop(NAME, None)) is not None:
+            state = read_state(settings)
+            if state is None:
+                unread = unread_state(settings)
+                await asyncio.wrap_future(store.write(unread))
+                of_class[unread.name] = unread
+            self.state = state or self.state
         of_groups = [name for name in documents if name.startswith(OF_GROUP)]
         kept_groups = [one for name in of_groups for one in documents.pop(name)]
+        if of_class:  # groups in settings that were not read have tables, too: they must stay
+            known = {OF_GROUP + one.id for one in self.state.groups}
+            kept_groups = [one for one in kept_groups if one.student in known]
         for name in dict.fromkeys((*evidence, *documents)):
             self._new(name).begin(evidence.get(name, []), documents.get(name, []))
         await self.groups.begin(self.state.groups, kept_groups)

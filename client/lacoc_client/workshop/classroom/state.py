@@ -14,6 +14,8 @@ from lacoc_shared.contest.codes import new_code
 NAME, NOBODY = "class", ""
 """Name under which the settings are kept as a document, and the "student" to whom this document
 belongs."""
+_UNREAD = "class unread "
+"""Begins the name under which settings that could not be read are kept; their time follows."""
 
 
 class ClassState(msgspec.Struct, frozen=True, kw_only=True):
@@ -38,6 +40,14 @@ class ClassState(msgspec.Struct, frozen=True, kw_only=True):
 def fresh_state() -> ClassState:
     """Make the settings of a new class."""
     return ClassState(code=new_code(), key=new_key())
+
+
+def unread_state(kept: Document) -> Document:
+    """Return settings that can't be read under another name, so that new ones don't replace them.
+
+    They may be the only place where the members of groups are written.
+    """
+    return kept._replace(name=f"{_UNREAD}{kept.at_s}")
 
 
 def read_state(kept: Document) -> ClassState | None:

@@ -230,10 +230,12 @@ class DesignPage:
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
+            UserError: if the student has asked too much lately.
         """
         check = requests.CheckAsk(
             id=0, table=asked.table, robot=asked.robot, sequences=asked.sequences
         )
+        learner.student.diary.spend_request()
         if mistakes := (await learner.checked(check)).mistakes:
             raise FileRefused(list(mistakes))
         robot = asked.robot or self._host.robot
@@ -242,6 +244,7 @@ class DesignPage:
     async def _learn(self, asked: requests.Asked, learner: Learner) -> Any:
         """Answer a request about the phases, such as an answer to a question."""
         student, diary = learner.student, learner.student.diary
+        diary.spend_request()
         value: Any = {}
         match asked:
             case requests.EditAsk():

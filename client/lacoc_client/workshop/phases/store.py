@@ -3,6 +3,7 @@
 import sqlite3
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable
 from concurrent.futures import Future
 from pathlib import Path
@@ -22,11 +23,20 @@ _T = TypeVar("_T")
 
 
 class _StoreJob(Generic[_T]):
-    """A job for the store's thread."""
+    """A job for the store's thread.
 
-    def __init__(self, work: Callable[[ClassFile], _T], writes: bool) -> None:
+    Args:
+        work: what the job does.
+        writes: whether it writes to the file.
+        adds: the student for whom it adds to the file; None: it adds nothing.
+    """
+
+    def __init__(
+        self, work: Callable[[ClassFile], _T], writes: bool = False, adds: str | None = None
+    ) -> None:
         self.work = work
         self.writes = writes
+        self.adds = adds
         self.done: Future[_T] = Future()
 
 
@@ -39,7 +49,7 @@ class ClassStore:
     lost. A document is lost only if it was newer than `DOCUMENT_S` plus the time of a write.
 
     A damaged file is renamed, and the class goes on in a fresh file. While the disk is full,
-    futures fail with a `UserError`, and documents wait until there is room.
+    futures fail with a `UserError`; evidence, votes and documents wait until there is room.
 
     Args:
         path: the file; it is made if there is none.
@@ -60,6 +70,8 @@ class ClassStore:
         self._documents = {(one.student, one.name): one for one in self._file.documents()}
         self._waiting: set[tuple[str, str]] = set()
         """Student and name of each document that is not on the disk yet."""
+        self._late: deque[_StoreJob[Any]] = deque()
+        """The jobs whose evidence or vote waits, in order; for the store's own thread only."""
         self._jobs: SimpleQueue[_StoreJob[Any] | None] = SimpleQueue()
         self._closed = False
         self._lock = threading.Lock()
@@ -71,7 +83,8 @@ class ClassStore:
     def trouble(self) -> Phrase | None:
         """A sentence that says what is wrong with the class file; None: nothing is wrong.
 
-        It names a full disk until a write succeeds, and a damaged file until the store is closed.
+        It names a full disk until a write succeeds and no evidence waits, and a damaged file until
+        the store is closed.
         """
         return self._no_room or self._damage
 
@@ -93,19 +106,22 @@ class ClassStore:
             self._written(documents)
             return number
 
-        return self._do(work, writes=True)
+        return self._do(_StoreJob(work, writes=True, adds=student))
 
     def vote(self, student: str, poll: str, choice: str, at_s: float) -> "Future[bool]":
         """Count a vote in a poll; the result is False if the student has voted in it before."""
-        return self._do(lambda file: file.vote(student, poll, choice, at_s), writes=True)
+        job = _StoreJob(
+            lambda file: file.vote(student, poll, choice, at_s), writes=True, adds=student
+        )
+        return self._do(job)
 
     def votes(self, poll: str) -> "Future[dict[str, int]]":
         """Read how many votes each choice of a poll has."""
-        return self._do(lambda file: file.votes(poll))
+        return self._do(_StoreJob(lambda file: file.votes(poll)))
 
     def evidence(self, student: str | None = None, after: int = 0) -> "Future[list[Kept]]":
         """Read evidence of a student, or of all (None), whose number is larger than `after`."""
-        return self._do(lambda file: file.evidence(student, after))
+        return self._do(_StoreJob(lambda file: file.evidence(student, after)))
 
     def keep(self, document: Document) -> None:
         """Take the newest content of a document; it is written to the disk within `DOCUMENT_S`.
@@ -128,20 +144,21 @@ class ClassStore:
         It raises the same errors as `keep`.
         """
         self.keep(document)  # so that it is written later if the disk is full now
-        return self._do(lambda file: file.write_documents([document]), writes=True)
+        return self._do(_StoreJob(lambda file: file.write_documents([document]), writes=True))
 
     def forget(self, student: str) -> "Future[None]":
         """Delete everything that is kept of a student."""
 
         def work(file: ClassFile) -> None:
             file.forget(student)  # first: if this fails, everything is as before
+            self._late = deque(job for job in self._late if job.adds != student)
             with self._lock:
                 gone = [key for key in self._documents if key[0] == student]
                 for key in gone:
                     del self._documents[key]
                     self._waiting.discard(key)
 
-        return self._do(work, writes=True)
+        return self._do(_StoreJob(work, writes=True))
 
     def documents(self, student: str | None = None) -> list[Document]:
         """Return the newest documents of a student or of all (None), sorted by student and name."""
@@ -163,8 +180,7 @@ class ClassStore:
     def __exit__(self, *error: object) -> None:
         self.close()
 
-    def _do(self, work: Callable[[ClassFile], _T], writes: bool = False) -> "Future[_T]":
-        job = _StoreJob(work, writes)
+    def _do(self, job: _StoreJob[_T]) -> "Future[_T]":
         with self._lock:
             if self._closed:
                 job.done.set_exception(UserError(say("class.closed")))
@@ -187,7 +203,7 @@ class ClassStore:
                     self._work(job)
                 going_on = job is not None
             if not going_on or time.monotonic() >= next_s:
-                self._write_documents()
+                self._write_waiting()
                 next_s = time.monotonic() + DOCUMENT_S
         self._file.close()
 
@@ -206,23 +222,38 @@ class ClassStore:
         except Exception as error:
             if job.writes and isinstance(error, UserError):
                 self._no_room = error.phrase
+                if job.adds is not None:
+                    self._late.append(job)
             job.done.set_exception(error)
         else:
-            if job.writes:
+            if job.writes and not self._late:
                 self._no_room = None
             job.done.set_result(result)
 
     def _once(self, job: _StoreJob[_T]) -> _T:
         try:
+            if job.adds is not None:
+                self._add_late()
             return job.work(self._file)
         except sqlite3.Error as error:
             raise self._file.problem(error) from error
 
-    def _write_documents(self) -> None:
+    def _add_late(self) -> None:
+        """Do the jobs that failed before, each in its turn, so that evidence stays in order."""
+        while self._late:
+            self._late[0].work(self._file)
+            self._late.popleft()
+
+    def _write_waiting(self) -> None:
         documents = self._waiting_documents()
-        if not documents:
+        if not documents and not self._late:
             return
-        job = _StoreJob(lambda file: file.write_documents(documents), writes=True)
+
+        def work(file: ClassFile) -> None:
+            self._add_late()
+            file.write_documents(documents)
+
+        job = _StoreJob(work, writes=True)
         self._work(job)
         if job.done.exception() is None:  # else `trouble` says why, and the documents go on waiting
             self._written(documents)

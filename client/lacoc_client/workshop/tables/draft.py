@@ -7,7 +7,7 @@ import msgspec
 
 from lacoc_client.workshop.design.files import sent_gait
 from lacoc_client.workshop.design.table import FileRow, FileTable, Kind, file_cells, file_name_of
-from lacoc_client.workshop.tables.entries import PLACE, SHAPE, Entry
+from lacoc_client.workshop.tables.entries import PLACE, SHAPE, Entry, RobotEntry, json_entry
 from lacoc_robots.seat_files import USUAL_NAMES, SeatFiles, with_level_b
 from lacoc_shared.gait.cells import number_text
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
@@ -17,11 +17,6 @@ from lacoc_shared.mistakes import FileRefused, UserError
 UNFINISHED = "unfinished-"
 """Begins the name of the file of a table with an empty cell or a mistake."""
 _KINDS: dict[str, Kind] = {"p": "postures", "l": "locomotion"}
-
-
-class _RobotEntry(msgspec.Struct, frozen=True):
-    name: str
-    text: str
 
 
 class Draft(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,7 +47,10 @@ class Draft(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def draft_of(entries: Mapping[str, Entry]) -> Draft | None:
-    """Return a document's table, keys and robot; None: it has no rows, or a cell has no angle."""
+    """Return a document's table, keys and robot.
+
+    None: it has no rows, a cell has no angle, or it has more rows than a `FileTable` may have.
+    """
     table = _table(entries)
     if table is None:
         return None
@@ -127,7 +125,12 @@ def _table(entries: Mapping[str, Entry]) -> FileTable | None:
     if not rows:
         return None
     numbered = _numbered(rows) if kind == "locomotion" else tuple(rows)
-    return FileTable(kind=kind, legs=legs, rows=numbered)
+    table = FileTable(kind=kind, legs=legs, rows=numbered)
+    try:
+        # Nobody could decode a table beyond its limits, also not the class at its next start.
+        return msgspec.convert(msgspec.to_builtins(table), FileTable)
+    except msgspec.ValidationError:
+        return None
 
 
 def _numbered(rows: list[FileRow]) -> tuple[FileRow, ...]:
@@ -166,8 +169,5 @@ def _sequences(
 
 
 def _robot_in(entries: Mapping[str, Entry]) -> SentFile | None:
-    try:
-        robot = msgspec.json.decode(str(entries.get("robot", "")), type=_RobotEntry)
-        return SentFile(robot.name, robot.text.encode())
-    except (msgspec.DecodeError, UnicodeError, RecursionError):
-        return None  # the workshop's
+    robot = json_entry(str(entries.get("robot", "")), RobotEntry)
+    return None if robot is None else SentFile(robot.name, robot.text.encode())

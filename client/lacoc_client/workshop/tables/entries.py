@@ -7,7 +7,7 @@
     p6/3.0/14?   a proposal for it, of somebody else than the row's owner (JSON)
     keys         the digits of each key of level B, such as "0,8765,1234"
     robot        the robot's file (JSON); "": the workshop's robot
-    file         which file has the table (JSON); only pages read it
+    file         which file has the table (JSON), or ""; only pages read it
 
 The name of a cell begins with the shape, so a number that somebody typed into a table of another
 shape can't get into this one. A removed row keeps its cells, so that it can come back complete. A
@@ -18,12 +18,14 @@ time stays in its row.
 import math
 import re
 from collections.abc import Mapping
+from typing import TypeVar
 
 import msgspec
 
 from lacoc_shared.gait.tables import JOINTS_PER_LEG
 
 Entry = float | str | bool
+_S = TypeVar("_S", bound=msgspec.Struct)
 
 ENTRIES_MOST = 8_000
 """Most entries of a table."""
@@ -40,11 +42,29 @@ PLACE = re.compile(
 )
 """Matches the name of a row or a cell: shape, kind, legs, key, rank, joint, and "?" for a
 proposal."""
-_LONG = ("keys", "robot", "file")
+
+
+class RobotEntry(msgspec.Struct, frozen=True):
+    """The robot's file, as it is in the entry `robot`."""
+
+    name: str
+    text: str
+
+
+class _FileEntry(msgspec.Struct, frozen=True, rename="camel"):
+    name: str
+    version: str
+    digest: str
+    robot_version: str | None
 
 
 class _ProposalEntry(msgspec.Struct, frozen=True):
     by: str
+
+
+_JSON: dict[str, type[msgspec.Struct]] = {"robot": RobotEntry, "file": _FileEntry}
+"""What the JSON of an entry has; pages could not open a table with anything else."""
+_LONG = ("keys", *_JSON)
 
 
 def is_entry(name: object, value: object) -> bool:
@@ -52,7 +72,9 @@ def is_entry(name: object, value: object) -> bool:
     if not isinstance(name, str):
         return False
     if name in _LONG:
-        return isinstance(value, str) and len(value) <= LONG_MOST
+        if not isinstance(value, str) or len(value) > LONG_MOST:
+            return False
+        return name not in _JSON or not value or json_entry(value, _JSON[name]) is not None
     if name == "shape":
         return isinstance(value, str) and SHAPE.fullmatch(value) is not None
     place = PLACE.fullmatch(name)
@@ -75,6 +97,14 @@ def without_proposals(entries: Mapping[str, Entry], by: str) -> dict[str, Entry]
         for name, value in entries.items()
         if not name.endswith("?") or _proposer(str(value)) != by
     }
+
+
+def json_entry(text: str, kind: type[_S]) -> _S | None:
+    """Decode an entry that is JSON; None if it is not of this kind."""
+    try:
+        return msgspec.json.decode(text, type=kind)
+    except (msgspec.DecodeError, UnicodeError, RecursionError):
+        return None
 
 
 def _proposer(text: str) -> str:

@@ -9,14 +9,26 @@ import msgspec
 
 from lacoc_client.workshop.design.learning.keeper import Keeper
 from lacoc_client.workshop.design.learning.rules import StudentRules
+from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import Document
-from lacoc_client.workshop.phases.evidence import Evidence, Named, TookStep, Voted
+from lacoc_client.workshop.phases.evidence import Edited, Evidence, Named, TookStep, Voted
 from lacoc_client.workshop.phases.phases import A_CYCLE, PHASES
 from lacoc_client.workshop.phases.progress import State, StudentProgress, progress
 from lacoc_client.workshop.phases.proof.questions import PhaseQuestion
 from lacoc_client.workshop.phases.store import ClassStore
+from lacoc_shared.gait.tables import JOINTS_PER_LEG
 from lacoc_shared.mistakes import UserError
+from lacoc_shared.network.allowance import Allowance
 from lacoc_shared.words import Phrase, say
+
+_READ_HZ, _READ_BURST = 3_000.0, 40_000
+"""How many legs in all rows of tables are read for one student: in a second on average, and at
+once. Each takes about 30 microseconds of the event loop. The largest shared table has 2,660."""
+_KEPT_HZ, _KEPT_BURST = 40.0, 16_000
+"""How many changed legs are kept as evidence of one student: in a second on average, and at once.
+Each takes about 50 bytes. After a break a page may tell 200 edits of a whole table of postures."""
+_REQUEST_COST = 10
+"""Each request for evidence counts as so many changed legs."""
 
 _T = TypeVar("_T")
 
@@ -86,6 +98,8 @@ class Diary:
         self._progress: StudentProgress | None = None
         self._reading = asyncio.Lock()
         self._is_forgotten = False
+        self._readings = Allowance(_READ_HZ, _READ_BURST)
+        self._keepings = Allowance(_KEPT_HZ, _KEPT_BURST)
         self.documents: tuple[Document, ...] = ()
         """The student's documents, as earlier runs of the program wrote them."""
 
@@ -105,6 +119,23 @@ class Diary:
         self._evidence[:0] = evidence
         self._progress = None
         self.documents = tuple(documents)
+
+    def spend_request(self) -> None:
+        """Count a request of the student for evidence.
+
+        Raises:
+            UserError: if the student has made too much evidence lately.
+        """
+        _spend(self._keepings, _REQUEST_COST)
+
+    def spend_table(self, table: FileTable) -> None:
+        """Count a table that must be read for the student; raise an error as `spend_request`."""
+        legs = (len(row.angles_deg) // JOINTS_PER_LEG for row in table.rows)
+        _spend(self._readings, sum(max(1, one) for one in legs))
+
+    def spend_edit(self, edit: Edited) -> None:
+        """Count an edit that is to be kept; raise an error as `spend_request`."""
+        _spend(self._keepings, len(edit.legs))
 
     async def add(self, *evidence: Evidence) -> None:
         """Add evidence.
@@ -240,6 +271,13 @@ class Diary:
                     return store  # `Keeper.trouble` says why
                 self.begin((one.evidence for one in kept), store.documents(self._student))
         return store
+
+
+def _spend(allowance: Allowance, cost: int) -> None:
+    now_s = time.monotonic()
+    if allowance.left(now_s) < cost:
+        raise UserError(say("gateway.too-much"))
+    allowance.take(cost, now_s)
 
 
 async def _kept(work: asyncio.Future[_T]) -> None:

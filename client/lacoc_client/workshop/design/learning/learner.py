@@ -101,13 +101,16 @@ class Learner:
 
         Raises:
             FileRefused: with every mistake of the table or of the robot.
+            UserError: if the student has sent too many edits lately.
         """
+        self._diary.spend_table(asked.table)
         version = _version(asked.table, asked.sequences)
         if asked.before.kind != asked.table.kind:
             return EditReply()
         edit = edited(_rows(asked.before), _rows(asked.table), version, asked.by)
         if edit is None:
             return EditReply()
+        self._diary.spend_edit(edit)
         evidence: list[Evidence] = [edit]
         judged = None
         if asked.guess is not None and asked.by == "hand":
@@ -219,8 +222,10 @@ class Learner:
 
         Raises:
             FileRefused: with every mistake of the robot file; mistakes of the table are returned.
-            UserError: if a locomotion table has no row of a key below its highest key.
+            UserError: if a locomotion table has no row of a key below its highest key, or if the
+                student has sent too many tables lately.
         """
+        self._diary.spend_table(asked.table)
         spec = await asyncio.to_thread(_robot, asked.robot)
         table = asked.table
         sequences = set(asked.sequences or ())
