@@ -18,7 +18,13 @@ from lacoc_client.play.team_way import where
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import OpenStage
-from lacoc_server.contest.league.timetable.calling import LOST_MS, SeenCourt, calls, is_open_call
+from lacoc_server.contest.league.timetable.calling import (
+    LOST_MS,
+    GameEnd,
+    SeenCourt,
+    calls,
+    is_open_call,
+)
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
@@ -131,15 +137,16 @@ def test_each_seat_is_told_where_it_is() -> None:
 
 
 def test_games_go_before_open_matches_that_have_not_begun() -> None:
-    """A court with an open match gets a game unless the match has begun."""
+    """A court with an open match gets a game unless the match is played."""
     from cup import NOW_MS, Cup
 
     seen = {
         "begun": SeenCourt(NOW_MS, "open.1", begun=True),
         "waits": SeenCourt(NOW_MS, "open.2"),
         "gone": SeenCourt(NOW_MS - LOST_MS),
+        "over": SeenCourt(NOW_MS, "open.3", begun=True, ended=GameEnd((0, 0), "draw", "r.mcap")),
     }
-    assert [one.court for one in calls(Cup().contest, seen, NOW_MS, 0)] == ["waits"]
+    assert [one.court for one in calls(Cup().contest, seen, NOW_MS, 0)] == ["waits", "over"]
 
 
 OPEN = '[stage.friendly]\nformat = "open"\n'

@@ -18,12 +18,15 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
+    Moved,
     Played,
     Substituted,
     Undrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
+from lacoc_server.contest.league.timetable.calling import LOST_MS
+from lacoc_server.contest.live.court_link import CourtResult
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_server.contest.verify.published import check_published
@@ -52,6 +55,7 @@ from lacoc_shared.messages.desk import (
     Undraw,
     Unshift,
 )
+from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
 _KNOCKOUT = """
@@ -164,6 +168,61 @@ def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
     )
     office.step()
     assert office.held == {}
+
+
+def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> None:
+    """Its court says that the match is over before the office knows its result."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    asked = SimpleNamespace(take=lambda: None)
+    link = SimpleNamespace(
+        poll=lambda: None,
+        is_there=True,
+        call=call,
+        phase=Phase.PLAYING,
+        missing=(),
+        result=None,
+        tell=lambda _: asked,
+        assign=lambda *_, **__: asked,
+    )
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    room.store.append(league_facts.new(Moved, pairing=match.pairing.id, court="south"))
+    for link.is_there, link.call, link.phase in (
+        (True, call, Phase.PLAYING),
+        (False, None, None),
+        (True, None, None),
+        (True, call, Phase.OFFICIAL),
+    ):
+        office.step()
+        assert [one.id for one in office.contest.running] == [call]
+    link.result = CourtResult(call, "m", match.next_seats, (20, 16), "left")
+    office.step()
+    played = [fact for fact in room.facts if isinstance(fact, Played)]
+    assert [(one.pairing, one.scores) for one in played] == [(match.pairing.id, (20, 16))]
+
+
+def test_a_court_that_can_not_be_understood_loses_its_game(room: Room) -> None:
+    """It is heard, but nobody knows what it has, so nobody ever would hear a result."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    asked = SimpleNamespace(take=lambda: None)
+    link = SimpleNamespace(poll=lambda: None, is_there=True, call=None, phase=None, missing=())
+    link.result, link.tell = None, lambda _: asked
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    office.step()
+    assert len(office.contest.running) == 1
+    with pytest.MonkeyPatch.context() as patch:
+        late_ms = room.facts[-1].at_ms + LOST_MS + 1000
+        patch.setattr("lacoc_server.contest.live.office._now_ms", lambda: late_ms)
+        office.step()
+    assert office.contest.running == ()
 
 
 def test_a_team_whose_game_was_void_has_played(room: Room) -> None:

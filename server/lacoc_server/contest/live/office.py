@@ -39,7 +39,8 @@ from lacoc_shared.words import Phrase
 
 _SEATS = ("left", "right")
 _AGAIN_MS = 1000
-_BEGUN = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
+_PLAYED = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
+_BEGUN = (*_PLAYED, Phase.OFFICIAL, Phase.VOID)
 
 
 class Office:
@@ -174,16 +175,17 @@ class Office:
 
     def _look(self, name: str, link: CourtLink | None, now_ms: int) -> SeenCourt:
         if link is None:
-            return SeenCourt(self._heard_ms[name])
+            return SeenCourt(self._heard_ms[name], begun=None)
         link.poll()
-        if link.is_there:
+        phase = link.phase
+        if phase is not None:  # a court that can't be understood would keep its game forever
             self._heard_ms[name] = now_ms
         ended = None
         if (result := link.result) is not None:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
             ended = GameEnd((left, right), who, f"{result.match_id}.mcap", result.advice)
-        begun, there = link.phase in _BEGUN, link.is_there
+        begun, there = None if phase is None else phase in _BEGUN, link.is_there
         heard_ms, call = self._heard_ms[name], link.call or ""
         return SeenCourt(heard_ms, call, begun, ended, there, link.missing)
 
@@ -268,7 +270,7 @@ class Office:
         running = {call.id for call in self.contest.running}
         for link in filter(None, self._links.values()):
             call = link.call
-            begun = link.phase in _BEGUN
+            begun = link.phase in _PLAYED
             is_fine = call in running or (
                 self._open_matches is not None and is_open_call(call or "")
             )
