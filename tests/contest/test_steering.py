@@ -55,6 +55,7 @@ from lacoc_shared.messages.desk import (
     Undraw,
     Unshift,
 )
+from lacoc_shared.messages.office import call_is_over
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
@@ -167,6 +168,21 @@ def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
         league_facts.new(FilesChanged, team=match.next_seats[0], files="f", reason="a wrong leg")
     )
     office.step()
+    assert office.held == {}
+
+
+def test_a_game_whose_call_is_over_at_its_court_is_called_again(room: Room) -> None:
+    """The facts may be an older copy: then the court has played the call, and closed its match."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
+    refused = SimpleNamespace(take=lambda: Refusal(call_is_over(call)))
+    office._asked[call] = cast(Any, refused)
+    office.step()
+    assert office.contest.running == ()
     assert office.held == {}
 
 

@@ -33,7 +33,7 @@ from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.teller import Teller
 from lacoc_shared.contest.tokens import lasting_hash
 from lacoc_shared.messages import Done, Refusal
-from lacoc_shared.messages.office import AssignedSeat
+from lacoc_shared.messages.office import AssignedSeat, call_is_over
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 
@@ -207,7 +207,8 @@ class Office:
     def _answers(self) -> list[AnyFact]:
         """Read the courts' answers.
 
-        Return facts that take back the games that a court refused for good.
+        Return facts that take back the games that a court refused for good. A game whose call is
+        over at the court is not held back: with another call the court can play it.
         """
         running = {call.id: call for call in self.contest.running}
         back: list[AnyFact] = []
@@ -218,8 +219,9 @@ class Office:
             call = running.get(call_id)
             if call is None or not isinstance(answer, Refusal) or answer.again:
                 continue
-            self.held[call.pairing, call.game] = answer.why
-            self._held_files[call.pairing, call.game] = self._files(call.pairing)
+            if answer.why != call_is_over(call_id):
+                self.held[call.pairing, call.game] = answer.why
+                self._held_files[call.pairing, call.game] = self._files(call.pairing)
             back.append(new(Recalled, pairing=call.pairing, game=call.game, reason="court refused"))
         return back
 
