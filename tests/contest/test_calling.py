@@ -169,6 +169,17 @@ def test_a_game_in_play_that_may_still_count_stays() -> None:
     assert len(list(taken_back(cup.contest, begun, NOW_MS))) == 1
 
 
+def test_a_dead_court_loses_its_game_though_the_clock_was_set_back() -> None:
+    """A call in the future, by the clock of now, keeps no game at a court that was not heard."""
+    cup = Cup()
+    call = called(cup)
+    now_ms = call.at_ms - 600_000
+    north = SeenCourt(now_ms - LOST_MS, begun=None)
+    assert not list(taken_back(cup.contest, {"north": north}, now_ms))
+    north = SeenCourt(now_ms - LOST_MS - 1, begun=None)
+    assert [one.reason for one in taken_back(cup.contest, {"north": north}, now_ms)] == [COURT_LOST]
+
+
 @pytest.mark.parametrize("is_moved", [True, False])
 def test_a_game_may_be_in_play_while_its_court_is_not_heard(*, is_moved: bool) -> None:
     """It stays until its court is heard or lost, also if it was moved or is not the next one."""

@@ -78,20 +78,20 @@ def token_of(court: str, seat: str) -> str:
 def test_a_court_that_waits_gets_an_open_match_once() -> None:
     """As long as the court does not have it, the same call is sent again; then it is left alone."""
     link, matches = Link(), OpenMatches(STAGE, token_of)
-    matches.look(link, 10_000)  # type: ignore[arg-type]
+    matches.look(link, 10)  # type: ignore[arg-type]
     assert link.assigned == [], "what the court has is not known yet"
     link.call = ""
-    for now_ms in (20_000, 20_100, 25_000):
-        matches.look(link, now_ms)  # type: ignore[arg-type]
+    for now_s in (20, 20.1, 25):
+        matches.look(link, now_s)  # type: ignore[arg-type]
     assert len(link.assigned) == 1, "the first request is not answered yet"
     link.answer.answer = Refusal(say("plain.text", text="not now"), again=True)
-    matches.look(link, 30_000)  # type: ignore[arg-type]
+    matches.look(link, 30)  # type: ignore[arg-type]
     (call,) = {*link.assigned}
     assert len(link.assigned) == 2
     assert is_open_call(call)
     link.answer.answer, link.call = Done(), call
     for link.phase in (Phase.LOBBY, Phase.PLAYING, Phase.FINISHED):
-        matches.look(link, 90_000)  # type: ignore[arg-type]
+        matches.look(link, 90)  # type: ignore[arg-type]
     assert len(link.assigned) == 2
 
 
@@ -100,11 +100,11 @@ def test_a_result_stays_for_ten_seconds() -> None:
     link, matches = Link(), OpenMatches(STAGE, token_of)
     for call, phase in (("open.1", Phase.OFFICIAL), ("f12", Phase.VOID)):
         link.call, link.phase, link.assigned = call, phase, []
-        now_ms = 100_000 if call == "f12" else 20_000
-        for later_ms in (0, 5_000, 9_900):
-            matches.look(link, now_ms + later_ms)  # type: ignore[arg-type]
+        now_s = 100 if call == "f12" else 20
+        for later_s in (0, 5, 9.9):
+            matches.look(link, now_s + later_s)  # type: ignore[arg-type]
         assert link.assigned == []
-        matches.look(link, now_ms + 10_000)  # type: ignore[arg-type]
+        matches.look(link, now_s + 10)  # type: ignore[arg-type]
         (found,) = link.assigned
         assert is_open_call(found)
         assert found != call
@@ -117,8 +117,8 @@ def test_a_refusal_is_told_once() -> None:
     link, matches = Link(), OpenMatches(STAGE, token_of, told.append)
     link.call = ""
     why = say("plain.text", text="other seats")
-    for now_ms in (20_000, 30_000, 40_000):
-        matches.look(link, now_ms)  # type: ignore[arg-type]
+    for now_s in (20, 30, 40):
+        matches.look(link, now_s)  # type: ignore[arg-type]
         link.answer.answer = Refusal(why)
     assert len(link.assigned) == 3
     assert told == [say("news.open-refused", court="red", why=why)]

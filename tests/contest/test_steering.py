@@ -1,5 +1,6 @@
 """Tests of a day that is steered from the office: who may, what it says, and that it is proven."""
 
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -22,6 +23,7 @@ from lacoc_server.contest.league.facts import (
     Played,
     Substituted,
     Undrawn,
+    Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
@@ -30,7 +32,7 @@ from lacoc_server.contest.live.court_link import CourtResult
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_server.contest.verify.published import check_published
-from lacoc_shared.messages import Refusal
+from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.desk import (
     PUBLISHED,
     Announce,
@@ -94,6 +96,14 @@ def effect_of(answer: object) -> list[str]:
 def wrongs(facts: tuple[AnyFact, ...]) -> list[str]:
     """Return the codes of what can't come from an honest contest."""
     return [one.code for one in check_history(facts, compute(facts, FORMATS))]
+
+
+def set_clocks(patch: pytest.MonkeyPatch, passed_s: float, set_by_s: float = 0) -> None:
+    """Let time pass for the office; its machine's clock may also be set."""
+    wall_ns = time.time_ns() + round((passed_s + set_by_s) * 1e9)
+    now_s = time.monotonic() + passed_s
+    clocks = SimpleNamespace(time_ns=lambda: wall_ns, monotonic=lambda: now_s)
+    patch.setattr("lacoc_server.contest.live.office.time", clocks)
 
 
 def test_the_timetable_has_every_match(room: Room) -> None:
@@ -221,7 +231,9 @@ def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> N
     assert [(one.pairing, one.scores) for one in played] == [(match.pairing.id, (20, 16))]
 
 
-def test_a_court_that_can_not_be_understood_loses_its_game(room: Room) -> None:
+def test_a_court_that_can_not_be_understood_loses_its_game(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It is heard, but nobody knows what it has, so nobody ever would hear a result."""
     match = compute(room.facts, FORMATS).stages[0].matches[0]
     assert match.next_seats is not None
@@ -234,11 +246,36 @@ def test_a_court_that_can_not_be_understood_loses_its_game(room: Room) -> None:
     office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
     office.step()
     assert len(office.contest.running) == 1
-    with pytest.MonkeyPatch.context() as patch:
-        late_ms = room.facts[-1].at_ms + LOST_MS + 1000
-        patch.setattr("lacoc_server.contest.live.office._now_ms", lambda: late_ms)
-        office.step()
+    set_clocks(monkeypatch, passed_s=LOST_MS / 1000 + 1)
+    office.step()
     assert office.contest.running == ()
+
+
+def test_a_game_in_vain_ends_though_the_clock_was_set_back(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The office asks a court once a second, whatever the clock of its machine says."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    asked = SimpleNamespace(take=Done)
+    sent: list[str] = []
+    link = SimpleNamespace(poll=lambda: None, is_there=True, call="", missing=(), result=None)
+    link.phase, link.tell = Phase.CREATED, lambda _: asked
+    link.assign = link.withdraw = lambda call, *_, **__: sent.append(call) or asked
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    office.step()
+    assert sent == [call]
+    link.call, link.phase = call, Phase.PLAYING
+    set_clocks(monkeypatch, passed_s=2, set_by_s=-600)
+    left = league_facts.new(Withdrawn, team=match.next_seats[0], reason="a broken leg")
+    room.store.append(left)
+    office.step()
+    assert call in sent[1:]
+    assert office.known.seen["north"].heard_ms <= office.known.pace.now_ms
 
 
 def test_a_team_whose_game_was_void_has_played(room: Room) -> None:

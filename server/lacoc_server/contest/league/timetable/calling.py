@@ -133,6 +133,7 @@ def taken_back(
         court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
         begun = court.begun and court.call == call.id  # None: not known
+        called_ms = call.at_ms if call.at_ms <= now_ms else 0  # else the clock was set back
         if call.id not in stays if begun is False else in_vain(contest, call):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
         elif begun:
@@ -143,7 +144,7 @@ def taken_back(
             and (move.court not in ("", call.court) or move.not_before_ms > now_ms)
         ):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason=MOVED)
-        elif now_ms - max(court.heard_ms, call.at_ms, since_ms) > LOST_MS:
+        elif now_ms - max(court.heard_ms, since_ms, called_ms) > LOST_MS:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason=COURT_LOST)
 
 
