@@ -5,7 +5,8 @@ import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from lacoc_process import started
@@ -16,10 +17,14 @@ from waiting import LIMIT_S, until
 from lacoc_server.commands.contest.checking import NOT_PROVEN
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.stand_ins import stand_in
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.facts import Called, Played, Recalled
+from lacoc_server.contest.live.away import AwayCourt
 from lacoc_shared.command.child import NOT_AGAIN
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import NoMatch, Record
+from lacoc_shared.words import Phrase, say
 
 CONTEST = """
 [contest]
@@ -68,6 +73,33 @@ def test_only_courts_with_an_address_elsewhere_run_elsewhere(tmp_path: Path, lac
     code, _, told = lacoc("contest", "courts", "blue", "--contest", file)
     assert code == 2
     assert 'elsewhere = "tcp/ADDRESS-OF-THIS-MACHINE:7447"' in told
+
+
+def test_a_court_that_can_not_be_opened_here_keeps_its_game_no_longer(tmp_path: Path) -> None:
+    """The office expects the court until the first attempt to open it has failed."""
+    file = tmp_path / "contest.toml"
+    file.write_text(CONTEST.format(here=free_port(), there=free_port()))
+    where = ContestFolder(file)
+    stand_in(where.stand_ins, "blue")
+    expected: list[str] = []
+    told: list[Phrase] = []
+    office = cast(Any, SimpleNamespace(expect=expected.append))
+
+    def open_here(_: str) -> Any:
+        raise UserError(say("plain.text", text="the port is taken"))
+
+    with AwayCourt(where, "blue", cast(Any, None), open_here, told.append) as court:
+        court.step(office)
+        assert expected == ["blue"]
+
+        def is_known() -> bool:
+            """Return whether a look at the court makes the office expect it no more."""
+            before = len(expected)
+            court.step(office)
+            return len(expected) == before
+
+        until(is_known)
+    assert [phrase.code for phrase in told] == ["away.can-not-open"]
 
 
 @pytest.mark.long(minutes=1)

@@ -7,6 +7,7 @@ from cup import NOW_MS, Cup
 
 from lacoc_server.contest.desk.overview import slots
 from lacoc_server.contest.league.facts import (
+    COURT_LOST,
     Called,
     Moved,
     Played,
@@ -166,6 +167,41 @@ def test_a_game_in_play_that_may_still_count_stays() -> None:
     cup.add(Voided, pairing=first.pairing, teams=first.teams, reason="nobody came")
     assert in_vain(cup.contest, second)
     assert len(list(taken_back(cup.contest, begun, NOW_MS))) == 1
+
+
+def test_a_dead_court_loses_its_game_though_the_clock_was_set_back() -> None:
+    """A call in the future, by the clock of now, keeps no game at a court that was not heard."""
+    cup = Cup()
+    call = called(cup)
+    now_ms = call.at_ms - 600_000
+    north = SeenCourt(now_ms - LOST_MS, begun=None)
+    assert not list(taken_back(cup.contest, {"north": north}, now_ms))
+    north = SeenCourt(now_ms - LOST_MS - 1, begun=None)
+    assert [one.reason for one in taken_back(cup.contest, {"north": north}, now_ms)] == [COURT_LOST]
+
+
+@pytest.mark.parametrize("is_moved", [True, False])
+def test_a_game_may_be_in_play_while_its_court_is_not_heard(*, is_moved: bool) -> None:
+    """It stays until its court is heard or lost, also if it was moved or is not the next one."""
+    cup = Cup(games=3)
+    first = called(cup)
+    about = {"pairing": first.pairing, "teams": first.teams}
+    cup.add(Played, game=1, record="r.mcap", scores=(3, 1), outcome="left", **about)
+    call = called(cup)
+    if is_moved:
+        cup.add(Moved, pairing=call.pairing, court="south")
+    else:
+        cup.add(Replay, game=1, reason="a cable", **about)
+    silent = {"north": SeenCourt(NOW_MS, begun=None)}
+    late_ms = NOW_MS + LOST_MS + 1
+    assert not list(taken_back(cup.contest, silent, NOW_MS + LOST_MS))
+    assert [fact.reason for fact in taken_back(cup.contest, silent, late_ms)] == [COURT_LOST]
+    other = {"north": SeenCourt(late_ms, "f1", begun=True)}
+    assert len(list(taken_back(cup.contest, other, late_ms))) == 1, "that is another game"
+    in_play = {"north": SeenCourt(late_ms, call.id, begun=True)}
+    assert not list(taken_back(cup.contest, in_play, late_ms))
+    cup.add(Voided, reason="nobody came", **about)
+    assert len(list(taken_back(cup.contest, silent, NOW_MS))) == 1, "it would count no more"
 
 
 def test_a_group_called_f_plays_no_final() -> None:

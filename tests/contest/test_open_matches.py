@@ -18,7 +18,13 @@ from lacoc_client.play.team_way import where
 from lacoc_robots.library import sample_gait_files
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import OpenStage
-from lacoc_server.contest.league.timetable.calling import LOST_MS, SeenCourt, calls, is_open_call
+from lacoc_server.contest.league.timetable.calling import (
+    LOST_MS,
+    GameEnd,
+    SeenCourt,
+    calls,
+    is_open_call,
+)
 from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.journal.journal import Journal
 from lacoc_server.match.match import Match
@@ -72,20 +78,20 @@ def token_of(court: str, seat: str) -> str:
 def test_a_court_that_waits_gets_an_open_match_once() -> None:
     """As long as the court does not have it, the same call is sent again; then it is left alone."""
     link, matches = Link(), OpenMatches(STAGE, token_of)
-    matches.look(link, 10_000)  # type: ignore[arg-type]
+    matches.look(link, 10)  # type: ignore[arg-type]
     assert link.assigned == [], "what the court has is not known yet"
     link.call = ""
-    for now_ms in (20_000, 20_100, 25_000):
-        matches.look(link, now_ms)  # type: ignore[arg-type]
+    for now_s in (20, 20.1, 25):
+        matches.look(link, now_s)  # type: ignore[arg-type]
     assert len(link.assigned) == 1, "the first request is not answered yet"
     link.answer.answer = Refusal(say("plain.text", text="not now"), again=True)
-    matches.look(link, 30_000)  # type: ignore[arg-type]
+    matches.look(link, 30)  # type: ignore[arg-type]
     (call,) = {*link.assigned}
     assert len(link.assigned) == 2
     assert is_open_call(call)
     link.answer.answer, link.call = Done(), call
     for link.phase in (Phase.LOBBY, Phase.PLAYING, Phase.FINISHED):
-        matches.look(link, 90_000)  # type: ignore[arg-type]
+        matches.look(link, 90)  # type: ignore[arg-type]
     assert len(link.assigned) == 2
 
 
@@ -94,11 +100,11 @@ def test_a_result_stays_for_ten_seconds() -> None:
     link, matches = Link(), OpenMatches(STAGE, token_of)
     for call, phase in (("open.1", Phase.OFFICIAL), ("f12", Phase.VOID)):
         link.call, link.phase, link.assigned = call, phase, []
-        now_ms = 100_000 if call == "f12" else 20_000
-        for later_ms in (0, 5_000, 9_900):
-            matches.look(link, now_ms + later_ms)  # type: ignore[arg-type]
+        now_s = 100 if call == "f12" else 20
+        for later_s in (0, 5, 9.9):
+            matches.look(link, now_s + later_s)  # type: ignore[arg-type]
         assert link.assigned == []
-        matches.look(link, now_ms + 10_000)  # type: ignore[arg-type]
+        matches.look(link, now_s + 10)  # type: ignore[arg-type]
         (found,) = link.assigned
         assert is_open_call(found)
         assert found != call
@@ -111,8 +117,8 @@ def test_a_refusal_is_told_once() -> None:
     link, matches = Link(), OpenMatches(STAGE, token_of, told.append)
     link.call = ""
     why = say("plain.text", text="other seats")
-    for now_ms in (20_000, 30_000, 40_000):
-        matches.look(link, now_ms)  # type: ignore[arg-type]
+    for now_s in (20, 30, 40):
+        matches.look(link, now_s)  # type: ignore[arg-type]
         link.answer.answer = Refusal(why)
     assert len(link.assigned) == 3
     assert told == [say("news.open-refused", court="red", why=why)]
@@ -131,15 +137,16 @@ def test_each_seat_is_told_where_it_is() -> None:
 
 
 def test_games_go_before_open_matches_that_have_not_begun() -> None:
-    """A court with an open match gets a game unless the match has begun."""
+    """A court with an open match gets a game unless the match is played."""
     from cup import NOW_MS, Cup
 
     seen = {
         "begun": SeenCourt(NOW_MS, "open.1", begun=True),
         "waits": SeenCourt(NOW_MS, "open.2"),
         "gone": SeenCourt(NOW_MS - LOST_MS),
+        "over": SeenCourt(NOW_MS, "open.3", begun=True, ended=GameEnd((0, 0), "draw", "r.mcap")),
     }
-    assert [one.court for one in calls(Cup().contest, seen, NOW_MS, 0)] == ["waits"]
+    assert [one.court for one in calls(Cup().contest, seen, NOW_MS, 0)] == ["waits", "over"]
 
 
 OPEN = '[stage.friendly]\nformat = "open"\n'

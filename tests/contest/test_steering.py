@@ -1,5 +1,6 @@
 """Tests of a day that is steered from the office: who may, what it says, and that it is proven."""
 
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -18,16 +19,20 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
+    Moved,
     Played,
     Substituted,
     Undrawn,
+    Withdrawn,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
+from lacoc_server.contest.league.timetable.calling import LOST_MS
+from lacoc_server.contest.live.court_link import CourtResult
 from lacoc_server.contest.live.office import Office
 from lacoc_server.contest.verify.history import check_history
 from lacoc_server.contest.verify.published import check_published
-from lacoc_shared.messages import Refusal
+from lacoc_shared.messages import Done, Refusal
 from lacoc_shared.messages.desk import (
     PUBLISHED,
     Announce,
@@ -52,6 +57,8 @@ from lacoc_shared.messages.desk import (
     Undraw,
     Unshift,
 )
+from lacoc_shared.messages.office import call_is_over
+from lacoc_shared.seat import Phase
 from lacoc_shared.words import say
 
 _KNOCKOUT = """
@@ -89,6 +96,14 @@ def effect_of(answer: object) -> list[str]:
 def wrongs(facts: tuple[AnyFact, ...]) -> list[str]:
     """Return the codes of what can't come from an honest contest."""
     return [one.code for one in check_history(facts, compute(facts, FORMATS))]
+
+
+def set_clocks(patch: pytest.MonkeyPatch, passed_s: float, set_by_s: float = 0) -> None:
+    """Let time pass for the office; its machine's clock may also be set."""
+    wall_ns = time.time_ns() + round((passed_s + set_by_s) * 1e9)
+    now_s = time.monotonic() + passed_s
+    clocks = SimpleNamespace(time_ns=lambda: wall_ns, monotonic=lambda: now_s)
+    patch.setattr("lacoc_server.contest.live.office.time", clocks)
 
 
 def test_the_timetable_has_every_match(room: Room) -> None:
@@ -164,6 +179,103 @@ def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
     )
     office.step()
     assert office.held == {}
+
+
+def test_a_game_whose_call_is_over_at_its_court_is_called_again(room: Room) -> None:
+    """The facts may be an older copy: then the court has played the call, and closed its match."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
+    refused = SimpleNamespace(take=lambda: Refusal(call_is_over(call)))
+    office._asked[call] = cast(Any, refused)
+    office.step()
+    assert office.contest.running == ()
+    assert office.held == {}
+
+
+def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> None:
+    """Its court says that the match is over before the office knows its result."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    asked = SimpleNamespace(take=lambda: None)
+    link = SimpleNamespace(
+        poll=lambda: None,
+        is_there=True,
+        call=call,
+        phase=Phase.PLAYING,
+        missing=(),
+        result=None,
+        tell=lambda _: asked,
+        assign=lambda *_, **__: asked,
+    )
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    room.store.append(league_facts.new(Moved, pairing=match.pairing.id, court="south"))
+    for link.is_there, link.call, link.phase in (
+        (True, call, Phase.PLAYING),
+        (False, None, None),
+        (True, None, None),
+        (True, call, Phase.OFFICIAL),
+    ):
+        office.step()
+        assert [one.id for one in office.contest.running] == [call]
+    link.result = CourtResult(call, "m", match.next_seats, (20, 16), "left")
+    office.step()
+    played = [fact for fact in room.facts if isinstance(fact, Played)]
+    assert [(one.pairing, one.scores) for one in played] == [(match.pairing.id, (20, 16))]
+
+
+def test_a_court_that_can_not_be_understood_loses_its_game(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is heard, but nobody knows what it has, so nobody ever would hear a result."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    asked = SimpleNamespace(take=lambda: None)
+    link = SimpleNamespace(poll=lambda: None, is_there=True, call=None, phase=None, missing=())
+    link.result, link.tell = None, lambda _: asked
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    office.step()
+    assert len(office.contest.running) == 1
+    set_clocks(monkeypatch, passed_s=LOST_MS / 1000 + 1)
+    office.step()
+    assert office.contest.running == ()
+
+
+def test_a_game_in_vain_ends_though_the_clock_was_set_back(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The office asks a court once a second, whatever the clock of its machine says."""
+    match = compute(room.facts, FORMATS).stages[0].matches[0]
+    assert match.next_seats is not None
+    game = {"pairing": match.pairing.id, "game": 1}
+    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1].id
+    asked = SimpleNamespace(take=Done)
+    sent: list[str] = []
+    link = SimpleNamespace(poll=lambda: None, is_there=True, call="", missing=(), result=None)
+    link.phase, link.tell = Phase.CREATED, lambda _: asked
+    link.assign = link.withdraw = lambda call, *_, **__: sent.append(call) or asked
+    links = {"north": cast(Any, link)}
+    office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
+    office.step()
+    assert sent == [call]
+    link.call, link.phase = call, Phase.PLAYING
+    set_clocks(monkeypatch, passed_s=2, set_by_s=-600)
+    left = league_facts.new(Withdrawn, team=match.next_seats[0], reason="a broken leg")
+    room.store.append(left)
+    office.step()
+    assert call in sent[1:]
+    assert office.known.seen["north"].heard_ms <= office.known.pace.now_ms
 
 
 def test_a_team_whose_game_was_void_has_played(room: Room) -> None:

@@ -9,7 +9,8 @@ from itertools import combinations
 from math import comb
 from pathlib import Path
 from random import Random
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 import small_contest
@@ -38,6 +39,7 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
+    Outcome,
     Planned,
     Played,
     Recalled,
@@ -47,9 +49,16 @@ from lacoc_server.contest.league.facts import (
     new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
+from lacoc_server.contest.live.court_link import result_of
 from lacoc_server.contest.verify.alone import InputCheck, Side, check_inputs, ends_alike
 from lacoc_server.contest.verify.check import ContestCheck, check
-from lacoc_server.contest.verify.games import GameCheck, check_game, games_of
+from lacoc_server.contest.verify.games import (
+    GameCheck,
+    GameToCheck,
+    _sides,
+    check_game,
+    games_of,
+)
 from lacoc_server.contest.verify.history import (
     call_of,
     check_earlier,
@@ -241,6 +250,57 @@ def test_a_game_that_was_voided_in_play_passes(copied: Path) -> None:
     assert checked(folder, facts).wrong == ()
     facts[-1] = replace(facts[-1], scores=(1, 0))
     assert [one.code for one in checked(folder, facts).wrong] == ["verify.other-game"]
+
+
+def test_a_void_game_has_no_score_for_the_office() -> None:
+    """Also if the game had ended, and went on because the referee gave time back."""
+    told = [
+        ("phase", {"after": "FINISHED"}),
+        ("result", {"winner": "left", "scores": [20, 16]}),
+        ("phase", {"after": "PLAYING"}),
+        ("phase", {"after": "VOID"}),
+    ]
+    events = [SimpleNamespace(kind=kind, data=data) for kind, data in told]
+    sheet = SimpleNamespace(call="f1", match_id="m", seats=[SimpleNamespace(team="Ann")] * 2)
+    void = result_of(cast(Any, sheet), cast(Any, events))
+    assert void is not None
+    assert (void.outcome, void.scores) == ("void", (0, 0))
+    ended = result_of(cast(Any, sheet), cast(Any, [*events[:2], *events[3:]]))
+    assert ended == void
+    events[3].data["after"] = "OFFICIAL"
+    official = result_of(cast(Any, sheet), cast(Any, events))
+    assert official is not None
+    assert (official.outcome, official.scores) == ("left", (20, 16))
+
+
+@pytest.mark.parametrize(
+    ("joined", "outcome", "found"),
+    [
+        ((0, 1), "left", ["Ann", "Bob"]),
+        ((0,), "left", ["Ann"]),
+        ((0,), "void", ["Ann", "Bob"]),
+        ((), "void", ["Ann", "Bob"]),
+    ],
+)
+def test_who_joined_with_the_files_of_an_entry(
+    tmp_path: Path, joined: tuple[int, ...], outcome: Outcome, found: list[str]
+) -> None:
+    """A void game may lack a team; another team that a match refused is in nobody's way."""
+    file = tmp_path / "contest.toml"
+    file.write_text(small_contest.CONTEST)
+    for team in ("Ann", "Bob"):
+        organiser.enter(file, team, None, "", "")
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        files = tuple((one.files,) for one in store.facts() if isinstance(one, Entered))
+    kept = where.entries.load(files[0][0])
+    inputs = [kept.join(seat, ("Ann", "Bob")[seat]) for seat in joined]
+    other = replace(kept.join(1, "Visitors"), robot=None)
+    record = SimpleNamespace(inputs={1: inputs, 2: [other]})
+    teams = ("Ann", "Bob")
+    played = new(Played, pairing="p", game=1, teams=teams, scores=(0, 0), outcome=outcome)
+    game = GameToCheck(played=played, about=say("plain.text", text=""), plan=None, files=files)
+    assert [one.team for one in _sides(tmp_path, game, cast(Any, record))] == found
 
 
 @pytest.mark.slow

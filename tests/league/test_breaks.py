@@ -8,6 +8,7 @@ from lacoc_server.contest.league.facts import (
     Announced,
     Closed,
     Drawn,
+    Moved,
     Paused,
     Planned,
     Replay,
@@ -63,6 +64,23 @@ def test_a_break_before_a_stage_is_a_pause_too() -> None:
     assert final.next_seats is not None
     cup.call(final.pairing.id, "north", final.next_seats)
     assert pause_of(cup) is None
+
+
+@pytest.mark.parametrize("is_pause", [True, False])
+def test_a_match_that_was_moved_to_a_later_time_does_not_follow_a_break(*, is_pause: bool) -> None:
+    """What follows a break or a pause with an end is the match that is called then."""
+    cup = Cup("single-knockout", teams=4)
+    first, second = cup.contest.stages[0].matches[:2]
+    until_ms = cup.now_ms + 60_000
+    cup.add(Moved, pairing=first.pairing.id, not_before_ms=until_ms + 60_000)
+    if is_pause:
+        cup.add(Paused, until_ms=until_ms)
+    else:
+        cup.add(Moved, pairing=second.pairing.id, not_before_ms=until_ms)
+    pause = pause_of(cup)
+    assert pause is not None
+    assert pause.fixture is not None
+    assert (pause.until_ms, render(pause.fixture)) == (until_ms, "Semi-final 2")
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,9 @@ from lacoc_server.contest.league.facts import (
     Moved,
     Paused,
     Planned,
+    Played,
     Recalled,
+    Replay,
     Resumed,
     Shifted,
     StageSettings,
@@ -146,6 +148,27 @@ def test_a_break_a_court_and_a_later_stage() -> None:
     event.now_ms += 120_000
     assert called(event) == [("finals:w2.1", "south")]
     assert called(event, ["north"]) == []
+
+
+@pytest.mark.parametrize("is_void", [True, False])
+def test_a_final_that_is_played_again_has_no_second_break(*, is_void: bool) -> None:
+    """After a void game of the final, or a decision to play it again, it is called at once."""
+    event = Event(4, 2, Random(1))
+    event.add(Planned, stage="cup", format="single-knockout", final_break_s=900.0)
+    event.add(Drawn, stage="cup", entries=tuple(event.names))
+    for match in event.contest.stages[0].matches[:2]:
+        assert match.next_seats is not None
+        about = {"pairing": match.pairing.id, "game": 1, "teams": match.next_seats}
+        event.add(Played, scores=(3, 1), outcome="left", **about)
+    assert called(event) == []
+    event.now_ms += 900_000
+    assert called(event) == [("cup:w2.1", "north")]
+    teams = event.contest.matches["cup:w2.1"].next_seats
+    final = {"pairing": "cup:w2.1", "game": 1, "teams": teams}
+    event.add(Played, scores=(0, 0), outcome="void" if is_void else "left", **final)
+    if not is_void:
+        event.add(Replay, reason="a cable", **final)
+    assert called(event) == [("cup:w2.1", "north")]
 
 
 @pytest.mark.parametrize("break_s", [0.0, 600.0])

@@ -46,6 +46,19 @@ def test_a_match_that_is_opened_now_has_the_time_in_its_name() -> None:
     assert before <= opened.replace(tzinfo=UTC) <= before + timedelta(seconds=60)
 
 
+def test_a_match_is_newer_than_all_before_it_though_the_clock_was_set_back(tmp_path: Path) -> None:
+    """A killed court goes on with its newest match by name, so names follow the order of matches.
+
+    Matches of other courts do not count.
+    """
+    for name in ("20991231-235959-main-007.mcap", "20991231-235959-main-008.000.live.mcap"):
+        (tmp_path / name).touch()
+    assert str(MatchName.new(tmp_path, "main", 9)) == "21000101-000000-main-009"
+    (tmp_path / "21000101-000000-main-009.000.live.mcap").touch()
+    assert str(MatchName.new(tmp_path, "main", 1)) == "21000101-000001-main-001"
+    assert MatchName.new(tmp_path, "other", 1).opened < "2099"
+
+
 def test_a_court_that_starts_twice_in_a_second_has_two_matches(tmp_path: Path) -> None:
     """A court that is started twice within a second gives its matches different, sorted names."""
     names = []

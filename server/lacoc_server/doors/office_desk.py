@@ -28,6 +28,7 @@ from lacoc_shared.messages.office import (
     Retire,
     Tell,
     Withdraw,
+    call_is_over,
 )
 from lacoc_shared.mistakes import printable
 from lacoc_shared.seat import Phase
@@ -155,7 +156,7 @@ class OfficeDesk(Generic[T]):
         if assign.call == self._call:
             return Done()
         if assign.call in self._past:
-            return self._refuse(Why.OLD, say("refused.call-is-over", call=assign.call))
+            return self._refuse(Why.OLD, call_is_over(assign.call))
         if (why := self._why_not(assign)) is not None:
             return self._refuse(Why.BAD_BYTES, why)
         if self._plays:
@@ -195,7 +196,7 @@ class OfficeDesk(Generic[T]):
             self.wanted = None
             return self._busy()
         if self._phase is Phase.OFFICIAL and not request.official:
-            return self._refuse(Why.OLD, say("refused.call-is-over", call=request.call))
+            return self._refuse(Why.OLD, call_is_over(request.call))
         self.wanted = WantedMatch(None, ends=request.begun, why=request.why)
         return None
 

@@ -114,6 +114,11 @@ EARLIER_OFFICE = say("refused.earlier-office")
 """Why a court refuses the requests of an office that went on at another machine."""
 
 
+def call_is_over(call: str) -> Phrase:
+    """Say why a court refuses a call: it has had the call's match, and closed it."""
+    return say("refused.call-is-over", call=call)
+
+
 class OfficeRequest(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The fields that all requests of an office to a court have."""
 

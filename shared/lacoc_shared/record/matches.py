@@ -13,6 +13,7 @@ from mcap.writer import MCAP0_MAGIC
 from lacoc_shared.record import files
 
 _ID = re.compile(r"(?P<opened>[0-9]{8}-[0-9]{6})-(?P<court>.+)-(?P<number>[0-9]{3}|[1-9][0-9]{3,})")
+_TIME = "%Y%m%d-%H%M%S"
 
 
 @dataclass(frozen=True, order=True)
@@ -35,8 +36,8 @@ class MatchName:
     def new(cls, folder: Path | None, court: str, number: int) -> "MatchName":
         """Make the name of a match that is opened now.
 
-        If the folder has a match of this name already, the new match gets a later time. This
-        happens when a court is started twice within a second.
+        It gets a later time than all matches of the court in the folder, also if the clock was set
+        back since, or the court is started twice within a second.
 
         Args:
             folder: folder of the court's records; None: the name need not be free.
@@ -44,8 +45,11 @@ class MatchName:
             number: number of the match at its court.
         """
         opened = datetime.now(UTC)
+        if folder is not None and (matches := court_matches(folder, court)):
+            newest = datetime.strptime(next(reversed(matches)).opened, _TIME).replace(tzinfo=UTC)
+            opened = max(opened, newest + timedelta(seconds=1))
         while True:
-            name = cls(opened.strftime("%Y%m%d-%H%M%S"), number, court)
+            name = cls(opened.strftime(_TIME), number, court)
             if folder is None or not any(folder.glob(f"{glob.escape(str(name))}.*")):
                 return name
             opened += timedelta(seconds=1)

@@ -192,7 +192,7 @@ def slots(contest: Contest, known: OfficeKnowledge) -> Iterator[Slot]:
             court=call.court,
             at_ms=call.at_ms,
             running=True,
-            begun=seen is not None and seen.call == call.id and seen.begun,
+            begun=seen is not None and seen.call == call.id and bool(seen.begun),
             absent=absent(call, seen, known.pace.now_ms),
             moved=_moved(moves.get(call.pairing)),
         )

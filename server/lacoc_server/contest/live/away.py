@@ -72,6 +72,8 @@ class Attempts(Generic[T]):
         self._pause = RetryPause(pause_s)
         self._aside = aside
         self._running: Future[T | None] | None = None
+        self.has_failed = False
+        """Whether an attempt has given no result."""
 
     def take(self) -> T | None:
         """Return the result, or None if there is none yet; begin an attempt if it is time."""
@@ -82,7 +84,9 @@ class Attempts(Generic[T]):
         if not self._running.done():
             return None
         ended, self._running = self._running, None
-        return ended.result()
+        result = ended.result()
+        self.has_failed |= result is None
+        return result
 
 
 class AwayCourt:
@@ -207,8 +211,12 @@ class AwayCourt:
             link.withdraw(sheet.call, official=True)
 
     def _go_on_here(self, office: Office) -> None:
-        """Open the court on this machine; if that fails, try again."""
-        office.expect(self.name)
+        """Open the court on this machine; if that fails, try again.
+
+        A court that could not be opened counts as silent, so another court can have its game.
+        """
+        if not self._opens.has_failed:
+            office.expect(self.name)
         opened = self._opens.take()
         if opened is None:
             return

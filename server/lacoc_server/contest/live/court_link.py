@@ -100,7 +100,7 @@ class CourtResult(NamedTuple):
     """Id of the match; its record has the same name."""
     teams: tuple[str, ...]
     scores: tuple[int, ...]
-    """Points by seat, with the referee's adjustments; zeros if play never ended."""
+    """Points by seat, with the referee's adjustments; zeros if the match is void."""
     outcome: str
     """Id of the seat that won officially, or "draw" or "void"."""
     advice: tuple[Phrase, ...] = ()
@@ -332,14 +332,15 @@ def result_of(sheet: Sheet, events: Sequence[Event]) -> CourtResult | None:
         for event in events
         if event.kind == "decision" and event.data.get("decision") == "declare"
     ]
-    outcome = "void"
+    outcome, scores = "void", (0,) * len(sheet.seats)
     if phases[-1] == Phase.OFFICIAL.name:
         outcome = str(ruled[-1] if ruled else results[-1]["winner"])
+        scores = tuple(results[-1]["scores"])
     return CourtResult(
         call=sheet.call,
         match_id=sheet.match_id,
         teams=tuple(seat.team for seat in sheet.seats),
-        scores=tuple(results[-1]["scores"]) if results else (0,) * len(sheet.seats),
+        scores=scores,
         outcome=outcome,
         advice=advice(events),
     )

@@ -5,6 +5,7 @@ it can be killed at any moment: started again, it reads the facts, asks the cour
 and goes on.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -33,13 +34,14 @@ from lacoc_server.contest.live.open_matches import OpenMatches
 from lacoc_server.contest.live.teller import Teller
 from lacoc_shared.contest.tokens import lasting_hash
 from lacoc_shared.messages import Done, Refusal
-from lacoc_shared.messages.office import AssignedSeat
+from lacoc_shared.messages.office import AssignedSeat, call_is_over
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase
 
 _SEATS = ("left", "right")
-_AGAIN_MS = 1000
-_BEGUN = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
+_AGAIN_S = 1.0
+_PLAYED = (Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.FINISHED)
+_BEGUN = (*_PLAYED, Phase.OFFICIAL, Phase.VOID)
 
 
 class Office:
@@ -83,13 +85,15 @@ class Office:
         )
         self._least_rest_ms = least_rest_ms
         self._draw_from_ms = draw_from_ms
-        self._heard_ms = dict.fromkeys(links, 0)
-        self._since_ms = _now_ms()
+        self._heard_s: dict[str, float] = {}
+        """By court: when it last told what it has. Times in seconds are of `time.monotonic`: the
+        machine's clock may be set."""
+        self._since_s = time.monotonic()
         """When this office began to listen; a court that was silent before keeps its game."""
         self._asked: dict[str, Asked[Done]] = {}
         """Assignments that are not answered yet, by the id of the call."""
-        self._asked_ms: dict[str, int] = {}
-        """By id of the call: when a court was last asked about it, in ms since 1970, UTC."""
+        self._asked_s: dict[str, float] = {}
+        """By id of the call: when a court was last asked about it."""
         self.held: dict[tuple[str, int], Phrase] = {}
         """Games that a court refused for good, by pairing and number, with the reason."""
         self._held_files: dict[tuple[str, int], tuple[str, ...]] = {}
@@ -131,7 +135,7 @@ class Office:
 
     def expect(self, court: str) -> None:
         """Treat a court as heard now, because it is being opened: so its game is not taken back."""
-        self._heard_ms[court] = _now_ms()
+        self._heard_s[court] = time.monotonic()
 
     def step(self) -> None:
         """Read the states of all courts, and do what follows.
@@ -150,15 +154,16 @@ class Office:
         self._append(lambda contest: [*refused, *results(contest, seen)])
         while self._may_draw(now_ms) and _draws(self.contest):
             self._append(_draws)
-        self._append(lambda contest: taken_back(contest, seen, now_ms, self._since_ms))
+        since_ms = _wall_ms(self._since_s, now_ms)
+        self._append(lambda contest: taken_back(contest, seen, now_ms, since_ms))
         now_ms = _now_ms()  # a result of this step ended before it, and its teams rest
         self._append(lambda contest: calls(contest, seen, now_ms, self._least_rest_ms, self.held))
         for call in wanted(self.contest, seen):
             link = self._links.get(call.court)
-            if link is not None and link.call is not None and self._may_ask(call.id, now_ms):
+            if link is not None and link.call is not None and self._may_ask(call.id):
                 self._asked[call.id] = self._assign(link, call)
-        self._take_back(now_ms)
-        self._fill(now_ms)
+        self._take_back()
+        self._fill()
         self._teller.tell(self.contest, self._facts, seen, now_ms)
         self.known = OfficeKnowledge(seen, self._teller.pace, dict(self.held))
 
@@ -174,18 +179,23 @@ class Office:
 
     def _look(self, name: str, link: CourtLink | None, now_ms: int) -> SeenCourt:
         if link is None:
-            return SeenCourt(self._heard_ms[name])
+            return SeenCourt(self._heard_ms(name, now_ms), begun=None)
         link.poll()
-        if link.is_there:
-            self._heard_ms[name] = now_ms
+        phase = link.phase
+        if phase is not None:  # a court that can't be understood would keep its game forever
+            self._heard_s[name] = time.monotonic()
         ended = None
         if (result := link.result) is not None:
             left, right = result.scores
             who = outcome(_SEATS, result.outcome)
             ended = GameEnd((left, right), who, f"{result.match_id}.mcap", result.advice)
-        begun, there = link.phase in _BEGUN, link.is_there
-        heard_ms, call = self._heard_ms[name], link.call or ""
+        begun, there = None if phase is None else phase in _BEGUN, link.is_there
+        heard_ms, call = self._heard_ms(name, now_ms), link.call or ""
         return SeenCourt(heard_ms, call, begun, ended, there, link.missing)
+
+    def _heard_ms(self, name: str, now_ms: int) -> int:
+        """Return when a court was heard last, in milliseconds since 1970, UTC; 0: never."""
+        return _wall_ms(self._heard_s[name], now_ms) if name in self._heard_s else 0
 
     def _append(self, follows: Callable[[Contest], Iterable[AnyFact]]) -> None:
         """Append the facts that `follows` returns for the newest contest.
@@ -205,7 +215,8 @@ class Office:
     def _answers(self) -> list[AnyFact]:
         """Read the courts' answers.
 
-        Return facts that take back the games that a court refused for good.
+        Return facts that take back the games that a court refused for good. A game whose call is
+        over at the court is not held back: with another call the court can play it.
         """
         running = {call.id: call for call in self.contest.running}
         back: list[AnyFact] = []
@@ -216,8 +227,9 @@ class Office:
             call = running.get(call_id)
             if call is None or not isinstance(answer, Refusal) or answer.again:
                 continue
-            self.held[call.pairing, call.game] = answer.why
-            self._held_files[call.pairing, call.game] = self._files(call.pairing)
+            if answer.why != call_is_over(call_id):
+                self.held[call.pairing, call.game] = answer.why
+                self._held_files[call.pairing, call.game] = self._files(call.pairing)
             back.append(new(Recalled, pairing=call.pairing, game=call.game, reason="court refused"))
         return back
 
@@ -263,32 +275,33 @@ class Office:
             limits=view.plan.limits,
         )
 
-    def _take_back(self, now_ms: int) -> None:
+    def _take_back(self) -> None:
         """Withdraw matches from courts that should not have them any more, also matches in play."""
         running = {call.id for call in self.contest.running}
         for link in filter(None, self._links.values()):
             call = link.call
-            begun = link.phase in _BEGUN
+            begun = link.phase in _PLAYED
             is_fine = call in running or (
                 self._open_matches is not None and is_open_call(call or "")
             )
             is_open = begun or link.phase in (Phase.LOBBY, Phase.READY)
-            if call and is_open and not is_fine and self._may_ask(call, now_ms):
+            if call and is_open and not is_fine and self._may_ask(call):
                 why = why_recalled(self.contest, self._facts, call)
                 self._asked[call] = link.withdraw(call, begun=begun, why=why)
 
-    def _fill(self, now_ms: int) -> None:
+    def _fill(self) -> None:
         """Give open matches to the courts that have no game."""
         busy = {call.court for call in self.contest.running}
         for name, link in self._links.items():
             if link is not None and name not in busy and self._open_matches is not None:
-                self._open_matches.look(link, now_ms)
+                self._open_matches.look(link, time.monotonic())
 
-    def _may_ask(self, call: str, now_ms: int) -> bool:
+    def _may_ask(self, call: str) -> bool:
         """Return whether the office may ask a court about a call now: at most once a second."""
-        if call in self._asked or now_ms - self._asked_ms.get(call, 0) < _AGAIN_MS:
+        now_s = time.monotonic()
+        if call in self._asked or now_s - self._asked_s.get(call, -math.inf) < _AGAIN_S:
             return False
-        self._asked_ms[call] = now_ms
+        self._asked_s[call] = now_s
         return True
 
 
@@ -300,3 +313,8 @@ def _draws(contest: Contest) -> list[AnyFact]:
 
 def _now_ms() -> int:
     return time.time_ns() // 1_000_000
+
+
+def _wall_ms(at_s: float, now_ms: int) -> int:
+    """Return a time of `time.monotonic` in milliseconds since 1970, by the clock as it is now."""
+    return now_ms - round(1000 * (time.monotonic() - at_s))

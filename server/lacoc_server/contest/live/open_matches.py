@@ -3,6 +3,7 @@
 Their state is only at the courts. So an office that was started again goes on with them.
 """
 
+import math
 import secrets
 from collections.abc import Callable, Iterator, Mapping
 
@@ -15,9 +16,9 @@ from lacoc_shared.messages.office import Whereabouts, open_match
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import Phrase, say
 
-_SHOWN_MS = 10_000
-"""A result is shown for this long before the next open match follows it [ms]."""
-_AGAIN_MS = 1000
+_SHOWN_S = 10.0
+"""A result is shown for this long before the next open match follows it [s]."""
+_AGAIN_S = 1.0
 _OVER = (Phase.OFFICIAL, Phase.VOID)
 
 
@@ -41,32 +42,31 @@ class OpenMatches:
         self._tell = tell
         self._next: dict[str, str] = {}
         """By court: the call of its next open match, until the court has this match."""
-        self._over: dict[str, tuple[str, int]] = {}
-        """By court: the call of a match that is over, and when that was seen, in milliseconds since
-        1970, UTC."""
+        self._over: dict[str, tuple[str, float]] = {}
+        """By court: the call of a match that is over, and when that was seen [s]."""
         self._asked: dict[str, Asked[Done]] = {}
-        self._asked_ms: dict[str, int] = {}
+        self._asked_s: dict[str, float] = {}
         self._refused: dict[str, Phrase] = {}
 
-    def look(self, link: CourtLink, now_ms: int) -> None:
+    def look(self, link: CourtLink, now_s: float) -> None:
         """Give the next open match to a court if it is free.
 
         This is called only for courts that have no game of the contest.
 
         Args:
             link: the connection to the court.
-            now_ms: the time, in milliseconds since 1970, UTC.
+            now_s: the time of a clock that nobody sets, such as `time.monotonic` [s].
         """
         court, call = link.court, link.call
         if not self._is_answered(court) or call is None:
             return
         if call == self._next.get(court):
             del self._next[court]
-        if not self._is_free(link, call, now_ms):
+        if not self._is_free(link, call, now_s):
             return
-        if now_ms - self._asked_ms.get(court, 0) < _AGAIN_MS:
+        if now_s - self._asked_s.get(court, -math.inf) < _AGAIN_S:
             return
-        self._asked_ms[court] = now_ms
+        self._asked_s[court] = now_s
         stage, call = self._stage, self._next.setdefault(court, new_call())
         tokens = {seat: [lasting_hash(self._token_of(court, seat))] for seat in stage.seats}
         assigned = open_match(tokens, call)
@@ -124,7 +124,7 @@ class OpenMatches:
             self._tell(say("news.open-refused", court=court, why=answer.why))
         return True
 
-    def _is_free(self, link: CourtLink, call: str, now_ms: int) -> bool:
+    def _is_free(self, link: CourtLink, call: str, now_s: float) -> bool:
         """Return whether a court can get an open match.
 
         It can if it has no match, or has shown the result of its match for long enough.
@@ -134,11 +134,11 @@ class OpenMatches:
         if link.phase not in _OVER:
             self._over.pop(link.court, None)
             return False
-        known, since_ms = self._over.setdefault(link.court, (call, now_ms))
+        known, since_s = self._over.setdefault(link.court, (call, now_s))
         if known != call:
-            self._over[link.court] = call, now_ms
+            self._over[link.court] = call, now_s
             return False
-        return now_ms - since_ms >= _SHOWN_MS
+        return now_s - since_s >= _SHOWN_S
 
 
 def new_call() -> str:

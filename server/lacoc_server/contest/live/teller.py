@@ -1,5 +1,7 @@
 """Tells every court of a contest where the teams are, so that a team can ask any of them."""
 
+import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from secrets import token_bytes
@@ -25,11 +27,11 @@ from lacoc_shared.messages import Done
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.words import say
 
-_LOOK_MS = 1000
-"""Time between two estimates of when matches begin, if nothing else has changed [ms]."""
-_AGAIN_MS = 3000
+_LOOK_S = 1.0
+"""Time between two estimates of when matches begin, if nothing else has changed [s]."""
+_AGAIN_S = 3.0
 """After this time a court is told again where the teams are, even without a change: it may have
-restarted [ms]."""
+restarted [s]."""
 _BETWEEN_MS = 60_000
 """Guess for the time from the call of a game to the start of play, until a game has ended [ms]."""
 _SALT_BYTES = 16
@@ -75,9 +77,10 @@ class Teller:
         self._waiting: tuple[str, ...] = ()
         """`_contest`, `_calls` and `_waiting`: the contest, the courts' calls and the waiting
         teams, as of the newest estimate."""
-        self._looked_ms = 0
+        self._looked_s = -math.inf
+        """When the newest estimate was made; as all times in seconds, of `time.monotonic`."""
         self._first_ms = 0
-        self._told: dict[str, tuple[int, dict[str, Whereabouts]]] = {}
+        self._told: dict[str, tuple[float, dict[str, Whereabouts]]] = {}
         """By court: when it was last told where the teams are, and what it was told."""
         self._asked: dict[str, Asked[Done]] = {}
 
@@ -86,7 +89,7 @@ class Teller:
     ) -> None:
         """Find out where each team plays or waits, and send this to the courts.
 
-        A court is told again if this has changed since the last time, or after `_AGAIN_MS`.
+        A court is told again if this has changed since the last time, or after `_AGAIN_S`.
 
         Args:
             contest: the contest.
@@ -97,13 +100,14 @@ class Teller:
         Raises:
             UserError: if a team has no token yet, and a new one can't be written.
         """
+        now_s = time.monotonic()
         calls = tuple(court.call for court in seen.values())
         waiting = self._applicants()
         is_new = contest is not self._contest
         is_new = is_new or (calls, waiting) != (self._calls, self._waiting)
-        if is_new or now_ms - self._looked_ms >= _LOOK_MS:
+        if is_new or now_s - self._looked_s >= _LOOK_S:
             self._contest, self._calls, self._waiting = contest, calls, waiting
-            self._looked_ms = now_ms
+            self._looked_s = now_s
             usual_ms = game_ms(facts, self._guess_ms(contest))
             self.pace = ContestPace(now_ms, usual_ms, self._least_rest_ms)
             coming = foreseen(contest, FORMATS)
@@ -124,10 +128,10 @@ class Teller:
             if (asked := self._asked.get(name)) is not None and asked.take() is None:
                 continue
             self._asked.pop(name, None)
-            told_ms, told = self._told.get(name, (0, {}))
-            is_due = now_ms - told_ms >= _AGAIN_MS
+            told_s, told = self._told.get(name, (-math.inf, {}))
+            is_due = now_s - told_s >= _AGAIN_S
             if link is not None and link.is_there and (is_due or told != self._teams):
-                self._told[name] = now_ms, self._teams
+                self._told[name] = now_s, self._teams
                 self._asked[name] = link.tell(self._teams)
 
     def _guess_ms(self, contest: Contest) -> int:

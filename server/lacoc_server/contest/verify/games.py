@@ -232,15 +232,17 @@ def _arena(game: GameToCheck) -> Arena:
 def _sides(folder: Path, game: GameToCheck, record: Record) -> list[Side]:
     """Return team, entry and bot of each seat; leave out a team none of whose entries fits.
 
-    An entry fits if its files are those with which the team joined in the record.
+    An entry fits if its files are those with which the team joined in the record. In a void game
+    any fits if the team did not join: perhaps it was aborted for that.
     """
     entries = EntryFolder(folder / ENTRIES)
     sides: list[Side] = []
     for seat, team in enumerate(game.played.teams):
-        joins = {*map(_content, _joins(record, seat))}
+        joins = {*map(_content, _joins(record, seat, team))}
+        is_absent = not joins and game.played.outcome == "void"
         for one in game.files[seat]:
             entry = _load(entries, one)
-            if entry is not None and joins == {_content(entry.join(seat, team))}:
+            if entry is not None and (is_absent or joins == {_content(entry.join(seat, team))}):
                 sides.append(Side(team, entry, game.played.steer))
                 break
     return sides
@@ -288,7 +290,7 @@ def _differences(game: GameToCheck, arena: Arena, record: Record) -> Iterator[Ph
         yield say("verify.of-teams")
         return
     seats = tuple(seat.id for seat in arena.seats)
-    # A game that a referee voided in play has no score for the office, but one in its record.
+    # A game that a referee voided has no score for the office, but perhaps one in its record.
     no_score = game.call is not None and played.outcome == "void" and not any(played.scores)
     same_score = no_score or result.scores == played.scores
     if not same_score or outcome(seats, result.official) != played.outcome:
@@ -330,12 +332,17 @@ def _rules(settings: Mapping[str, Any]) -> dict[str, Any]:
     return {**settings, "seat": seats}
 
 
-def _joins(record: Record, seat: int) -> list[JoinSeat]:
+def _joins(record: Record, seat: int, team: str) -> list[JoinSeat]:
+    """Return a team's requests for a seat.
+
+    A record also has those of other teams, which the match refuses: one may have been weighed in
+    while the court opened the match.
+    """
     return [
         one
         for inputs in record.inputs.values()
         for one in inputs
-        if isinstance(one, JoinSeat) and one.seat == seat
+        if isinstance(one, JoinSeat) and (one.seat, one.team) == (seat, team)
     ]
 
 

@@ -29,17 +29,19 @@ def newest_break(contest: Contest, coming: tuple[Foreseen, ...]) -> Break | None
 
     Args:
         contest: the contest.
-        coming: its matches that are still to come, from `foreseen`.
+        coming: its matches that are still to come, from `foreseen`. Of those that may be played
+            when the break ends, the first one follows it.
     """
     if contest.over:
         return None
     until_ms = contest.day.until_ms
-    ready = playable(contest)
-    if not contest.day.paused and not contest.running and ready:
-        until_ms = min(not_before_ms(contest, match, _FOREVER_MS) for match in ready)
+    ready = [] if contest.day.paused else playable(contest)
+    begins = {match.pairing.id: not_before_ms(contest, match, _FOREVER_MS) for match in ready}
+    if begins and not contest.running:
+        until_ms = min(begins.values())
     if not contest.day.paused and not until_ms:
         return None
-    first = next(iter(coming), None)
+    first = min(coming, key=lambda one: begins.get(one.pairing.id, _FOREVER_MS), default=None)
     return Break(
         until_ms=0 if contest.day.paused else until_ms,
         fixture=first.fixture if first else None,

@@ -54,11 +54,12 @@ class SeenCourt(NamedTuple):
     """The state of a court, as the office knows it now."""
 
     heard_ms: int
-    """When the court was heard last, in milliseconds since 1970, UTC; 0: never."""
+    """When the court last told what it has, in milliseconds since 1970, UTC; 0: never."""
     call: str = ""
     """Id of the call whose match the court has; "": none, or not known, as of a silent court."""
-    begun: bool = False
-    """Whether play has begun in the match of the call; False while the court is silent."""
+    begun: bool | None = False
+    """Whether play has begun in the match of the call, or the match is over; None: not known, as of
+    a silent court."""
     ended: GameEnd | None = None
     """How the match ended; None: it has no official result."""
     there: bool = False
@@ -116,8 +117,9 @@ def taken_back(
 
     Taken back are games that are no longer needed, for example because a team has left; games that
     were moved to another court or a later time; and games of courts that were not heard for
-    `LOST_MS`. A game that has begun is taken back only if it is played in vain: it stays with a
-    court that was killed, which goes on with it.
+    `LOST_MS`. A game that has begun is taken back only if it is played in vain: it stays until its
+    result is known, also with a court that was killed, which goes on with it. While nobody knows
+    whether a game has begun, it stays too, until its court counts as lost.
 
     Args:
         contest: the contest.
@@ -130,16 +132,19 @@ def taken_back(
     for call in contest.running:
         court = seen.get(call.court, SeenCourt(0))
         move = moves.get(call.pairing)
-        has_begun = court.call == call.id and court.begun
-        if in_vain(contest, call) if has_begun else call.id not in stays:
+        begun = court.begun and court.call == call.id  # None: not known
+        called_ms = call.at_ms if call.at_ms <= now_ms else 0  # else the clock was set back
+        if call.id not in stays if begun is False else in_vain(contest, call):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
-        elif has_begun:
+        elif begun:
             continue
-        elif move is not None and (
-            move.court not in ("", call.court) or move.not_before_ms > now_ms
+        elif (
+            begun is False
+            and move is not None
+            and (move.court not in ("", call.court) or move.not_before_ms > now_ms)
         ):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason=MOVED)
-        elif now_ms - max(court.heard_ms, call.at_ms, since_ms) > LOST_MS:
+        elif now_ms - max(court.heard_ms, since_ms, called_ms) > LOST_MS:
             yield new(Recalled, pairing=call.pairing, game=call.game, reason=COURT_LOST)
 
 
@@ -190,8 +195,8 @@ def calls(
 ) -> list[Called]:
     """Return the calls that give the next games to the free courts.
 
-    A court whose open match has begun is not free. A court whose open match has not begun is free:
-    the called game replaces the open match.
+    A court whose open match is played is not free. A court whose open match has not begun, or is
+    over, is free: the called game replaces the open match.
 
     Args:
         contest: the contest.
@@ -200,15 +205,15 @@ def calls(
         least_rest_ms: shortest time between two matches of a team.
         held: games that a court refused, by pairing and number; they are not called.
     """
-    free = [
-        name
-        for name in present(seen, now_ms)
-        if not (seen[name].begun and is_open_call(seen[name].call))
-    ]
+    free = [name for name in present(seen, now_ms) if not _plays_open_match(seen[name])]
     return [
         new(Called, pairing=one.pairing, game=one.game, teams=one.teams, court=one.court)
         for one in assign(contest, free, now_ms, least_rest_ms, held)
     ]
+
+
+def _plays_open_match(court: SeenCourt) -> bool:
+    return is_open_call(court.call) and bool(court.begun) and court.ended is None
 
 
 def present(seen: Mapping[str, SeenCourt], now_ms: int) -> list[str]:

@@ -67,8 +67,8 @@ def not_before_ms(contest: Contest, match: ContestMatch, now_ms: int) -> int:
     """Return the earliest time of a match, in milliseconds since 1970, UTC; 0: any time.
 
     The break before a stage counts until a game of the stage has ended, and the break before a
-    final until a game of the final has. The rest of teams never counts here. Games with an end
-    later than `now_ms` are ignored: the machine's clock was set back.
+    final until a game of the final has, also a void one. The rest of teams never counts here. Games
+    with an end later than `now_ms` are ignored: the machine's clock was set back.
     """
     name, plan = stage_of(match.pairing.id), _plan(contest, match)
     before = [view.name for view in contest.stages]
@@ -79,7 +79,9 @@ def not_before_ms(contest: Contest, match: ContestMatch, now_ms: int) -> int:
     before = before[: before.index(name)] if name in before else before
     if name not in ended and (ends := [past[one] for one in before if one in past]):
         earliest.append(end_ms(max(ends), round(1000 * plan.break_s)))
-    if is_final(match) and not match.games and name in past:
+    newest = {contest.ended_ms.get(team, ("", 0))[0] for team in match.teams if team}
+    has_begun = bool(match.games) or match.pairing.id in newest
+    if is_final(match) and not has_begun and name in past:
         earliest.append(end_ms(past[name], round(1000 * plan.final_break_s)))
     return max(earliest)
 
