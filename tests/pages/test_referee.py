@@ -526,6 +526,31 @@ def test_what_becomes_official_is_said_as_it_is(venue: Venue, referee: Referee) 
 
 
 @pytest.mark.long
+def test_an_open_dialog_decides_nothing_about_the_next_match(
+    court: Venue, referee: Referee
+) -> None:
+    """Somebody else ends the match meanwhile: the dialog says so, and its button is closed."""
+    page = at_the_desk(referee())
+    group(page, "Declare void").click()
+    dialog = page.get_by_role("dialog")
+    dialog.locator("label.chip", has_text="network").click()
+    expect(dialog.locator("[type=submit]")).to_be_enabled()
+    other = court.referee("Sato")
+    other.ask("take_over")
+    decide(other, "network", type="abort")
+    decide(other, type="next")
+    other.close()
+    expect(dialog).to_contain_text("You began this decision in the match before")
+    expect(dialog.locator("[type=submit]")).to_be_disabled()
+    page.keyboard.press("Escape")
+    page.locator(".acting").get_by_role("button", name="Take over").click()
+    expect(page.locator(".acting.mine")).to_be_visible()
+    group(page, "Declare void").click()
+    confirm(page, "network")
+    phase(page, 8)
+
+
+@pytest.mark.long
 def test_a_flag_is_named_well(venue: Venue, referee: Referee) -> None:
     """The page names a marker in the page's language, not by its name in the record."""
     text = venue.contest.read_text("utf-8").replace("othello", "flag-strike")

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { nextMove } from "../../../client/web/src/core/way.ts";
+import { Driver, nextMove } from "../../../client/web/src/core/way.ts";
 
 const called = { state: "court", court: "north", seat: "left", call: "c1" };
 const waits = { state: "waits", court: "south", seat: "", call: "" };
@@ -69,3 +69,12 @@ const TABLE = [
 for (const [name, situation, move] of TABLE) {
   test(`a team that ${name}: ${move}`, () => assert.equal(nextMove(situation), move));
 }
+
+test("who drives a seat is not forgotten in a short silence, nor for another call", () => {
+  const driver = new Driver();
+  assert.equal(driver.drives("c1", 0), false);
+  driver.heard("c1", 1000);
+  assert.equal(driver.drives("c1", 10_900), true);
+  assert.equal(driver.drives("c1", 11_000), false);
+  assert.equal(driver.drives("c2", 1500), false);
+});

@@ -23,9 +23,12 @@ export const ARROWS: Record<string, number> = {
   ArrowDown: 0,
 };
 
+/** Code of the key that leaves. */
+export const LEAVE = "KeyZ";
+
 const OTHERS: Record<string, Pressed> = {
   KeyX: { does: "restart" },
-  KeyZ: { does: "leave" },
+  [LEAVE]: { does: "leave" },
   KeyR: { does: "ready" },
   Tab: { does: "level" },
   Space: { does: "view" },

@@ -5,7 +5,7 @@ import { goToCourt, keepToken, ownToken } from "./address";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
-import { type Move, nextMove } from "./way";
+import { Driver, type Move, nextMove } from "./way";
 import { Phase, type Whereabouts } from "./wire";
 
 const ASK_MS = 2000;
@@ -37,6 +37,7 @@ export class Team {
   private mine = "";
   /** The call whose seat a person takes from whoever drives it. */
   private taken = "";
+  private readonly driver = new Driver();
   /** The call of the newest request for a seat. */
   private asked = "";
   private officialMs = 0;
@@ -120,6 +121,7 @@ export class Team {
     const at = this.court.welcome.peek()?.court;
     if (!there || !at) return;
     const { held, wanted } = this.player.seats(at);
+    const isHeard = this.isDriven(there.seat);
     const move = nextMove({
       there,
       court: at,
@@ -128,8 +130,9 @@ export class Team {
       mine: this.mine,
       seen: now - this.officialMs > RESULT_MS,
       gone: ["left", "lost"].includes(this.player.standing.peek()),
-      driven: there.call !== this.taken && this.isDriven(there.seat),
+      driven: there.call !== this.taken && (isHeard || this.driver.drives(there.call, now)),
     });
+    if (move === "ask" && isHeard) this.driver.heard(there.call, now);
     this.driven.value = move === "ask";
     this.hearRefusal(there.call);
     // Only the court's health says who holds the seat; it comes twice a second.

@@ -50,3 +50,23 @@ export function nextMove(now: Situation): Move {
   if (call !== there.call) return "stay";
   return driven ? "ask" : "join";
 }
+
+/** A driver who was heard so long ago may still come back: a bad line, or a court that was killed. */
+const BACK_MS = 10_000;
+
+/** Remembers that somebody else drives the seat of a call, so that a short silence gives no seat away. */
+export class Driver {
+  private call = "";
+  private heardMs = 0;
+
+  /** Somebody else was heard, who drives the seat of this call. */
+  heard(call: string, nowMs: number): void {
+    this.call = call;
+    this.heardMs = nowMs;
+  }
+
+  /** Whether somebody else drives the seat of this call, and may come back. */
+  drives(call: string, nowMs: number): boolean {
+    return call === this.call && nowMs - this.heardMs < BACK_MS;
+  }
+}

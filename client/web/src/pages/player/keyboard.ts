@@ -10,7 +10,7 @@
 
 import type { Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { isFromInputMethod, type Pressed, readKey } from "../../core/keys";
+import { isFromInputMethod, LEAVE, type Pressed, readKey } from "../../core/keys";
 import { isTyping } from "../../ui/shortcuts";
 
 const INPUT_METHOD_MS = 8000;
@@ -35,6 +35,8 @@ export function useKeyboard(
   useEffect(() => {
     let timer = 0;
     const take = (event: KeyboardEvent) => {
+      // A browser may not tell that z goes up beside one of these.
+      if (event.ctrlKey || event.altKey || event.metaKey) steering.leaveReleased();
       if (!steering.isOn() || document.querySelector("dialog[open]")) return;
       const target = event.target as HTMLElement;
       if (isTyping(event)) return;
@@ -57,7 +59,7 @@ export function useKeyboard(
       if (!event.repeat) steering.act(pressed, event.timeStamp);
     };
     const release = (event: Event) => {
-      if (event instanceof KeyboardEvent && readKey(event)?.does !== "leave") return;
+      if (event instanceof KeyboardEvent && event.code !== LEAVE) return;
       steering.leaveReleased();
     };
     window.addEventListener("keydown", take);

@@ -34,12 +34,15 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
   const words = useSignal("");
   const busy = useSignal(false);
   const refused = useSignal("");
+  const match = useSignal(desk.court.frame.peek()?.match);
   const close = () => {
     desk.draft.value = null;
   };
   const needsReason = NEED_A_REASON.has(draft.name);
   const reason = needsReason ? reasonOfBoth(chip.value, words.value) : "";
+  const isOther = match.value !== desk.court.frame.value?.match;
   const why =
+    (isOther && t("ask.otherMatch")) ||
     desk.whyNot(draft.name) ||
     (draft.amount && wrongAmount(draft.amount, amount)) ||
     (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "");
