@@ -72,7 +72,7 @@ def test_a_court_that_is_opened_later_is_found() -> None:
     opener.start()
     with Patience(60.0).until(connect) as session:
         opener.join()
-        assert session.routers()
+        assert session.links()
     courts[0].close()
 
 

@@ -69,11 +69,11 @@ def test_a_waiting_court_takes_a_renewed_certificate(file: Path, tmp_path: Path)
         access = contests.load(file).access(contests.load(file).court()[0])
         with open_client(access.addresses, authority=access.authority) as session:
             view = Spectator(session, "north")
-            before, court = serial(file, at), session.routers()
+            before, court = serial(file, at), session.links()
             (tmp_path / "tls/privkey.pem").write_text("half of a pair")
             make_certificate(file, ())
             until(lambda: is_renewed(file, at, before))
-            until(lambda: session.routers() not in ((), court))
+            until(lambda: session.links() not in ((), court))
             until(view.poll)
 
 

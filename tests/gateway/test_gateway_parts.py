@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast, get_args
 from urllib.request import urlopen
 
@@ -32,9 +33,12 @@ from lacoc_client.play.controller import Hold
 from lacoc_client.web.gateway import home, page_seat, page_socket, published, server, wire
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.browser import open_browser
+from lacoc_client.web.gateway.courts import Courts
+from lacoc_client.web.gateway.crowd import Crowd
 from lacoc_client.web.gateway.feed import CourtFeed
 from lacoc_client.web.gateway.files import NOT_BUILT, PageFiles
 from lacoc_client.web.gateway.guard import Guard
+from lacoc_client.web.gateway.page import Page
 from lacoc_client.web.gateway.page_seat import PageSeat
 from lacoc_client.web.gateway.recordings import Recordings
 from lacoc_client.web.gateway.rules_route import rules_route
@@ -238,6 +242,64 @@ def test_a_page_hears_nothing_of_the_seat_it_had_before(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(page_seat, "SeatThread", Thread)
     assert run_async(told) == ["held"]
+
+
+TRY = wire.TryAsk(id=1, keys=(), first=0, until=0)
+
+
+class TryingThread:
+    """A seat's thread whose court answers no question about keys before `released` is set."""
+
+    def __init__(self) -> None:
+        self.released = threading.Event()
+
+    def do(self, job: Any, answer: Any) -> None:
+        asks = SimpleNamespace(try_out=lambda *_: lambda: self.released.wait(LIMIT_S))
+        answer(job(asks), None)
+
+
+def test_a_page_tries_keys_one_after_another() -> None:
+    """Who asks again before the answer has come is told to ask later; after it the page may ask."""
+    threads, thread = Threads(2), TryingThread()
+
+    async def asks() -> bool:
+        viewer = Viewer(Wire())  # type: ignore[arg-type]
+        seat = PageSeat(viewer, Answers(viewer, print), None, lambda *_, **__: None)
+        seat._thread = cast("Any", thread)
+        first = asyncio.ensure_future(seat.try_out(TRY, threads))
+        await asyncio.sleep(0)
+        refused = asyncio.ensure_future(seat.try_out(TRY, threads))
+        await asyncio.sleep(0)
+        thread.released.set()
+        with pytest.raises(NotNow):
+            await refused
+        return bool(await first and await seat.try_out(TRY, threads))
+
+    assert run_async(asks)
+    threads.close()
+
+
+def test_players_who_try_keys_hold_up_no_referee() -> None:
+    """While many pages wait for a slow court, a decision goes to its court at once."""
+    thread = TryingThread()
+
+    async def decides() -> None:
+        courts = Courts(home.Home(courts={}))
+        for _ in range(40):
+            socket = SimpleNamespace(state=SimpleNamespace(socket=Wire()), client=None)
+            page = Page(cast("Any", socket), courts, Crowd(courts))
+            page._feed, page._referees = cast("Any", (object(), object()))
+            page._seat._thread = cast("Any", thread)
+            await page._answer(TRY)
+        for _ in range(10):
+            await asyncio.sleep(0)  # now all of them wait for a thread, or have one
+        try:
+            await asyncio.wait_for(courts.threads.run(lambda: None), LIMIT_S / 2)
+        finally:
+            thread.released.set()
+            await courts.close()
+
+    run_async(decides)
 
 
 def event(number: int, text: str = "", match: int = 1, beat: int = 0) -> Event:

@@ -77,7 +77,7 @@ def test_where_nobody_listens_is_said() -> None:
 def test_the_first_address_that_answers_is_used(router: Session) -> None:
     """A court that goes on at its second address is found there, also by who comes later."""
     with open_client(["tcp/127.0.0.1:1", *router.locators()]) as client:
-        assert client.routers()
+        assert client.links()
 
 
 def test_another_program_at_the_address_is_said() -> None:
@@ -252,4 +252,4 @@ def test_silent_connections_keep_nobody_out() -> None:
             silent = stack.enter_context(socket.create_connection((host, int(port)), LIMIT_S))
             silent.sendall(b"\x01\x02")
         with open_client([place], LIMIT_S) as newcomer:
-            until(newcomer.routers)
+            until(newcomer.links)

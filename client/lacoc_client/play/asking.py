@@ -87,6 +87,8 @@ def ask(
     message: msgspec.Struct,
     reply: type[T],
     timeout_s: float = ANSWER_S,
+    *,
+    repeatable: bool = False,
 ) -> T:
     """Send a court a request, and decode its answer.
 
@@ -97,6 +99,7 @@ def ask(
         message: the request.
         reply: type of the answer.
         timeout_s: how long to wait.
+        repeatable: as in `fetch`.
 
     Raises:
         NoAnswer: if the court was asked and does not answer.
@@ -105,30 +108,48 @@ def ask(
         NotNow: if the court refuses for now; the message is its reason.
         UserError: if the court refuses for good.
     """
-    return understand(fetch(session, keys, key, codec.encode(message), timeout_s), reply)
+    request = codec.encode(message)
+    return understand(fetch(session, keys, key, request, timeout_s, repeatable=repeatable), reply)
 
 
 def fetch(
-    session: Session, keys: KeySpace, key: str, payload: bytes = b"", timeout_s: float = ANSWER_S
+    session: Session,
+    keys: KeySpace,
+    key: str,
+    payload: bytes = b"",
+    timeout_s: float = ANSWER_S,
+    *,
+    repeatable: bool = True,
 ) -> bytes:
     """Send a court a request, and return its answer as bytes; it raises the errors of `ask`.
 
     For a moment after its first frame, a restarted court does not receive requests yet. So the
     request is sent again, as long as it is certain that no court received it.
+
+    Args:
+        session: the connection.
+        keys: the court's key expressions.
+        key: key expression of the request.
+        payload: the request.
+        timeout_s: how long to wait.
+        repeatable: whether the request does no harm if the court gets it twice. Then it is sent
+            again even if a court may have received it before the link broke.
     """
     end_s = time.monotonic() + _COMING_BACK_S
-    reached: tuple[str, ...] = ()
+    links: tuple[str, ...] = ()
     while True:
-        reached = reached or session.routers()
+        links = links or session.links()
         try:
             return session.ask(key, payload, timeout_s)
         except NoReply as silence:
             # Zenoh drops requests some milliseconds before it reports a broken link.
             time.sleep(_AGAIN_S)
-            lost = reached and session.routers() != reached
-            if lost or isinstance(silence, TooLate):
+            # Meanwhile it may be connected again, even to the same court, but by another link.
+            lost = links and session.links() != links
+            is_over = time.monotonic() >= end_s
+            if isinstance(silence, TooLate) or (lost and (is_over or not repeatable)):
                 raise NoAnswer(no_answer(session, keys.court)) from None
-            if time.monotonic() >= end_s:
+            if is_over:
                 raise NoCourt(no_answer(session, keys.court)) from None
         except Refused as refused:
             raise refusal_of(refused.payload) from None

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 
 import msgspec
 
-from lacoc_client.play.asking import NoCourt, NotNow, ask
+from lacoc_client.play.asking import NoAnswer, NoCourt, NotNow, ask
 from lacoc_client.play.spectator import Spectator
 from lacoc_shared import seal
 from lacoc_shared.codec import encode
@@ -169,6 +169,8 @@ class Controller:
         self._health_seen: Health | None = None
         self._other_holder = False
         """Whether the newest health named another session as the holder of the seat."""
+        self._leaving = False
+        """Whether the player gave up the seat, and no answer or health has shown the result."""
         self._seq = 0
         self._requests = 0
         """Number of ready and leave requests in this session."""
@@ -222,10 +224,9 @@ class Controller:
                 say("refused.files-too-large", size_kib=size // 1024, most_kib=most_kib)
             )
         key = self._keys.request(self.seat, "join")
-        joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s)
-        self.view.poll()
-        self._health_seen = self.view.health  # older than the session, so it says nothing about it
-        self._other_holder = False
+        joined = ask(self._session, self._keys, key, self._join, Joined, timeout_s, repeatable=True)
+        self._skip_health()
+        self._other_holder = self._leaving = False
         self._joined = joined
         self._requests = 0
         self._seq = joined.last_seq
@@ -259,9 +260,15 @@ class Controller:
             A sentence from the court, if it sent one.
 
         Raises:
-            UserError: if the court refuses or does not answer.
+            UserError: if the court refuses or does not answer. In the second case the court's next
+                health message decides whether the seat is given up.
         """
-        said = self._request("leave", True)
+        try:
+            said = self._request("leave", True)
+        except NoAnswer:
+            self._skip_health()
+            self._leaving = True
+            raise
         self.hold, self._joined = Hold.LEFT, None
         return said
 
@@ -458,6 +465,11 @@ class Controller:
                 why = _WHY.get(seat.refused_why, say("key.refused"))
                 self._refused.append(RefusedKey(press.level, press.key, why))
 
+    def _skip_health(self) -> None:
+        """Ignore the health messages that have come so far: they are older than what was asked."""
+        self.view.poll()
+        self._health_seen = self.view.health
+
     def _check_hold(self) -> None:
         """Find out from the court's health whether this controller still holds the seat.
 
@@ -471,9 +483,12 @@ class Controller:
         self._health_seen = health
         holder = next((seat.session for seat in health.seats if seat.id == self.seat), 0)
         believed, self._other_holder = self._other_holder, False
-        if self._joined is None or holder == 0:
+        if holder == 0 and self._leaving:
+            self.hold, self.reason, self._joined = Hold.LEFT, None, None
+        elif self._joined is None or holder == 0:
             self._join_again()
         elif holder == self._joined.session:
+            self._leaving = False
             self.hold, self.reason = Hold.HELD, None
         elif believed:
             self.hold, self.reason = Hold.REPLACED, None

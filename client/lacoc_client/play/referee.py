@@ -38,7 +38,8 @@ class RefereeClient:
         Raises:
             UserError: if it is not a referee's token of the court, or no court answers.
         """
-        ask(self._session, self._keys, self._keys.enter, Enter(token=self._token), Done)
+        key, request = self._keys.enter, Enter(token=self._token)
+        ask(self._session, self._keys, key, request, Done, repeatable=True)
 
     def decide(self, decision: Decision, reason: Phrase | str, by: str) -> DecisionReply:
         """Send a decision, and return the court's reply, which comes when the decision is on disk.
@@ -69,4 +70,4 @@ class RefereeClient:
         """
         request = OutlookRequest(token=self._token, decision=decision, seconds=seconds)
         key = self._keys.outlook
-        return ask(self._session, self._keys, key, request, Outlook, _OUTLOOK_S)
+        return ask(self._session, self._keys, key, request, Outlook, _OUTLOOK_S, repeatable=True)

@@ -39,7 +39,7 @@ def where(session: Session, court: str, token: str) -> Whereabouts:
         UserError: if no team has this token.
     """
     keys = KeySpace(court)
-    return ask(session, keys, keys.where, Where(token=token), Whereabouts)
+    return ask(session, keys, keys.where, Where(token=token), Whereabouts, repeatable=True)
 
 
 class TeamWay:

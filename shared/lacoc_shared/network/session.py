@@ -284,9 +284,12 @@ class Session:
         )
         return Question(key, replies)
 
-    def routers(self) -> tuple[str, ...]:
-        """Return the Zenoh ids of the courts' sessions to which this one is connected now."""
-        return tuple(sorted(map(str, self._session.info.routers_zid())))
+    def links(self) -> tuple[str, ...]:
+        """Return this side's addresses of the connections to courts that are open now.
+
+        A connection that broke and was made again has another address (another port).
+        """
+        return tuple(sorted(link.src for link in self._session.info.links()))
 
     def announce(self, key: str) -> None:
         """Announce a key expression to other sessions until this session closes."""

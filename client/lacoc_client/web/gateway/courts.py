@@ -25,6 +25,9 @@ _FILES_S = 0.5
 _STRANGERS = 4
 """Number of threads that ask courts about unknown tokens: those that no court has accepted yet.
 Decisions and other requests run on other threads, so they never wait for these."""
+_TRIES = 4
+"""Number of threads that wait for courts while players try keys in the lobby. A court lets a robot
+walk for some seconds, one after another; nothing else waits for that."""
 
 
 class Courts:
@@ -42,6 +45,8 @@ class Courts:
         """Threads for requests to courts."""
         self.strangers = Threads(_STRANGERS)
         """Threads that ask courts about unknown tokens: those that no court has accepted yet."""
+        self.tries = Threads(_TRIES)
+        """Threads that wait for courts while players try keys in the lobby."""
         self._feeds: dict[str, tuple[CourtFeed, Referees]] = {}
         self._programme: Programme | None = None
         self.claiming: set[Viewer] = set()
@@ -204,3 +209,4 @@ class Courts:
         await asyncio.gather(*(feed.stop() for feed, _ in self._feeds.values()))
         self.threads.close()
         self.strangers.close()
+        self.tries.close()

@@ -113,7 +113,7 @@ class Page:
                 answers.reply(asked.id, {})
             case wire.TryAsk():
                 self._acting()
-                answers.later(asked.id, self._seat.try_out(asked, self._courts.threads))
+                answers.later(asked.id, self._seat.try_out(asked, self._courts.tries))
             case wire.EnterAsk():
                 feed, referees = self._acting()
                 _spend(self._tokens)

@@ -5,9 +5,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from lacoc_client.play.asking import NotNow
 from lacoc_client.play.controller import Controller, SeenFrame
 from lacoc_client.web.gateway import wire
-from lacoc_client.web.gateway.answers import Answers, in_future, in_loop
+from lacoc_client.web.gateway.answers import TOO_MUCH, Answers, in_future, in_loop
 from lacoc_client.web.gateway.home import Prefill
 from lacoc_client.web.gateway.seat_thread import Answer, SeatThread
 from lacoc_client.web.gateway.threads import Threads
@@ -45,6 +46,7 @@ class PageSeat:
         self._log = log
         self._thread: SeatThread | None = None
         self._joins = 0
+        self._trying = asyncio.Lock()
         self.brings = True
         """Whether a join must bring files; False for a contest's team, whose files the office has
         already."""
@@ -110,19 +112,24 @@ class PageSeat:
         Wait for the answer on one of `threads`, so that the seat's own thread can go on.
 
         Raises:
+            NotNow: if the page still waits for the answer to such a question.
             UserError: if the page has no seat, or the court refuses or does not answer.
         """
         if self._thread is None:
             raise UserError(say("gateway.no-seat"))
-        sealed = asyncio.get_running_loop().create_future()
-        self._thread.do(
-            lambda controller: controller.try_out(
-                asked.keys, asked.first, asked.until, asked.drawn
-            ),
-            partial(in_future, sealed),
-        )
-        ask: Callable[[], TryOutReply] = await sealed
-        return await threads.run(ask)
+        # One at a time, so that a page that asks without waiting keeps few others waiting.
+        if self._trying.locked():
+            raise NotNow(TOO_MUCH)
+        async with self._trying:
+            sealed = asyncio.get_running_loop().create_future()
+            self._thread.do(
+                lambda controller: controller.try_out(
+                    asked.keys, asked.first, asked.until, asked.drawn
+                ),
+                partial(in_future, sealed),
+            )
+            ask: Callable[[], TryOutReply] = await sealed
+            return await threads.run(ask)
 
     def leave(self) -> None:
         """Stop steering: the page has gone, or watches another court; the team keeps the seat."""
