@@ -163,6 +163,31 @@ def test_a_changed_event_touch_or_snapshot_is_named(
     assert render(verdict(record).said) == f"beat {beat} differs: {words}"
 
 
+def test_no_robot_is_moved_between_two_snapshots(tmp_path: Path) -> None:
+    """A snapshot without a tick differs: two of them would let a robot jump in a countdown."""
+    slow = {"match": {"countdown_s": 0.06}}
+    match = Match(setup("flag-strike", slow), World)
+    journal, first = Journal(match, tmp_path), 350
+    writer = journal.writer
+    assert writer is not None
+    for number in range(BEATS):
+        beat, _ = journal.beat(INPUTS.get(number, ()))
+        if number in (first, first + 1):
+            assert isinstance(match.physics, World)
+            assert (Phase(beat.frame.phase), beat.ticked) == (Phase.COUNTDOWN, False)
+            saved = match.physics.save()
+            if number > first:  # the first robot's position, after the digest and the time
+                (x_m,) = struct.unpack_from("<d", saved, 16)
+                saved = saved[:16] + struct.pack("<d", x_m + 0.05) + saved[24:]
+                match.physics.load(saved)
+            writer.snapshot(number, saved)
+    journal.close()
+    record = Record.read(writer.path)
+    assert render(verdict(record).said) == f"beat {first} differs: the snapshot"
+    with pytest.raises(UserError, match=f"beat {first} differs: the snapshot"):
+        resume(record)
+
+
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
     """Copy a record as software of protocol 1 would have written it; return the copy's path."""
     header = record.header
