@@ -1,13 +1,14 @@
 """Tests of what a court's next match takes from the last one: seats, files and silences."""
 
 import errno
+import itertools
 import os
 import secrets
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 from running import until
@@ -24,6 +25,8 @@ from lacoc_server.doors.network import CourtNetwork
 from lacoc_server.match.entry import JoinCheck
 from lacoc_shared.contest.tokens import new_token_hash
 from lacoc_shared.decisions import Abort, Halt, Next, Set, Start
+from lacoc_shared.gait.tables import Level
+from lacoc_shared.inputs import Input, KeySeat
 from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import SeatFrame, SentFile, Sheet
 from lacoc_shared.messages.office import open_match
@@ -169,6 +172,25 @@ def test_a_contestant_who_comes_back_is_heard(room: Room) -> None:
     until(players[1:], lambda: seat_of(players[1], 0).flags & SeatFlag.SILENT)
     players[0].join()
     until(players, lambda: not seat_of(players[1], 0).flags & SeatFlag.SILENT)
+
+
+def test_a_robot_stands_when_a_key_arrives_with_the_leave(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If a contestant leaves in play, keys of the same beat do not let the robot walk on."""
+    players = playing(room)
+    commands, seqs = Inbox.commands, itertools.count(100)
+
+    def with_keys(self: Inbox, *arrived: Any) -> list[Input]:
+        held = self.health(0.0)[0].session
+        keys = [KeySeat(0, next(seqs), Level.LOCOMOTION, 2)] if held else []
+        return [*commands(self, *arrived), *keys]
+
+    monkeypatch.setattr(Inbox, "commands", with_keys)
+    until(players, lambda: seat_of(players[1], 0).key == 2)
+    players[0].leave()
+    until(players[1:], lambda: seat_of(players[1], 0).flags & SeatFlag.SILENT)
+    assert seat_of(players[1], 0).key == 0
 
 
 def test_the_disk_fills_in_the_beat_of_next(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:

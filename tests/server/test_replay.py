@@ -22,7 +22,7 @@ from lacoc_shared.inputs import HeardSeat, Input, KeySeat, ReadySeat, SilentSeat
 from lacoc_shared.messages import Event, Frame
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.record.schema import KINDS
+from lacoc_shared.record.schema import KINDS, Result
 from lacoc_shared.record.stream import walk_messages
 from lacoc_shared.record.writer import RecordWriter
 from lacoc_shared.seat import Phase
@@ -163,6 +163,31 @@ def test_a_changed_event_touch_or_snapshot_is_named(
     assert render(verdict(record).said) == f"beat {beat} differs: {words}"
 
 
+def test_no_robot_is_moved_between_two_snapshots(tmp_path: Path) -> None:
+    """A snapshot without a tick differs: two of them would let a robot jump in a countdown."""
+    slow = {"match": {"countdown_s": 0.06}}
+    match = Match(setup("flag-strike", slow), World)
+    journal, first = Journal(match, tmp_path), 350
+    writer = journal.writer
+    assert writer is not None
+    for number in range(BEATS):
+        beat, _ = journal.beat(INPUTS.get(number, ()))
+        if number in (first, first + 1):
+            assert isinstance(match.physics, World)
+            assert (Phase(beat.frame.phase), beat.ticked) == (Phase.COUNTDOWN, False)
+            saved = match.physics.save()
+            if number > first:  # the first robot's position, after the digest and the time
+                (x_m,) = struct.unpack_from("<d", saved, 16)
+                saved = saved[:16] + struct.pack("<d", x_m + 0.05) + saved[24:]
+                match.physics.load(saved)
+            writer.snapshot(number, saved)
+    journal.close()
+    record = Record.read(writer.path)
+    assert render(verdict(record).said) == f"beat {first} differs: the snapshot"
+    with pytest.raises(UserError, match=f"beat {first} differs: the snapshot"):
+        resume(record)
+
+
 def as_protocol_1(record: Record, live: Path, folder: Path) -> Path:
     """Copy a record as software of protocol 1 would have written it; return the copy's path."""
     header = record.header
@@ -206,6 +231,70 @@ def test_a_changed_result_is_named(tmp_path: Path) -> None:
     assert record.result is not None
     record.results = [msgspec.structs.replace(record.result, scores=(36, 0))]
     assert render(verdict(record).said) == f"beat {record.last_beat} differs: the result"
+
+
+def result(beats: int) -> Result:
+    """Return a result that somebody invents for a record."""
+    return Result(
+        match_id="m",
+        court="main",
+        match=1,
+        arena="flag-strike",
+        teams=("Ants", "Bees"),
+        scores=(0, 99),
+        computed="right",
+        official="right",
+        reason=say("over.time"),
+        clock_s=1.0,
+        beats=beats,
+        digest="",
+        model="",
+    )
+
+
+@pytest.mark.parametrize("more", [1, 2, 3])
+def test_an_invented_result_is_named(more: int, live: tuple[Path, list[Beat]]) -> None:
+    """If a result is added to the record of a match that goes on, verify names the result."""
+    record = Record.read(live[0])
+    record.results = [result(record.last_beat + more)]
+    last = record.last_beat
+    assert render(verdict(record).said) == f"beat {last} differs: the result"
+    assert record.result == (record.results[0] if more == 1 else None)
+
+
+def test_an_invented_event_is_named(live: tuple[Path, list[Beat]]) -> None:
+    """An event of the next beat is accepted only if the court was killed in that beat."""
+    record = Record.read(live[0])
+    last = record.last_beat
+    record.events.append(msgspec.structs.replace(record.events[-1], beat=last + 1))
+    assert render(verdict(record).said) == f"beat {last} differs: events of no beat"
+    record.last_beat += 1
+    assert verdict(record).kind is VerdictKind.SAME
+
+
+def test_what_a_killed_court_told_nobody_is_no_result(
+    live: tuple[Path, list[Beat]],
+) -> None:
+    """A result of the beat in which a court was killed does not count; the record verifies."""
+    record = Record.read(live[0])
+    record.last_beat += 1  # the beat has an event, and no frame
+    record.events.append(msgspec.structs.replace(record.events[-1], beat=record.last_beat))
+    record.results = [result(record.last_beat + 1)]
+    assert record.result is None
+    assert verdict(record).kind is VerdictKind.SAME
+
+
+def test_a_record_without_beats_has_no_result(
+    live: tuple[Path, list[Beat]], tmp_path: Path
+) -> None:
+    """A record that is empty verifies, but not if it has a result."""
+    header = Record.read(live[0]).header
+    empty, invented = (RecordWriter(tmp_path / name, header) for name in "ab")
+    invented.result(result(1))
+    for writer in (empty, invented):
+        writer.close()
+    assert verdict(Record.read(empty.path)).kind is VerdictKind.SAME
+    assert render(verdict(Record.read(invented.path)).said) == "beat 0 differs: the result"
 
 
 def test_another_mujoco_is_refused(live: tuple[Path, list[Beat]]) -> None:

@@ -13,6 +13,7 @@ from lacoc_arenas.game import GameEvent, Observation, Place, RobotView
 from lacoc_server.match.kept.history import History
 from lacoc_shared import decisions as d
 from lacoc_shared.messages import DecisionReply, Event, Refusal
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import Phase
 from lacoc_shared.words import render, say
 
@@ -235,6 +236,25 @@ def test_a_dry_run_changes_nothing_and_tells_the_truth(kind: str) -> None:
     wet = take_back(stage, number)
     assert (dry.scores, dry.changes, dry.said) == (wet.scores, wet.changes, wet.said)
     assert stage.scores == wet.scores != twin.scores
+
+
+@pytest.mark.parametrize("dry_run", [True, False])
+def test_a_take_back_in_which_the_game_breaks_is_refused(
+    dry_run: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """If the game's code breaks in a take-back, the referee is told why, and nothing changes."""
+    stage = othello(CHAIN)
+    before, number = stage.match.history.state, event(stage, "flip", "c3r2").number
+
+    def broken(*_: object) -> None:
+        raise UserError(say("plain.text", text="the game breaks"))
+
+    monkeypatch.setattr(type(stage.match.history._game), "step", broken)
+    reply = stage.decide(d.TakeBack(number, dry_run))
+    assert isinstance(reply, Refusal)
+    assert "the game breaks" in render(reply.why)
+    assert stage.match.history.state is before
+    assert stage.match.history.knows(number)
 
 
 def test_what_is_gone_cannot_be_taken_back() -> None:

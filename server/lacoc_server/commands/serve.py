@@ -213,7 +213,7 @@ def _opening(tokens: Mapping[str, str], left: Unfinished | None) -> dict[str, li
         for one in left.match.assigned.seats if left.match.assigned else ():
             found[one.id] += one.token_hashes
         for seat, held in left.token_hashes.items():
-            found[seat].append(held)
+            found[seat] += held
     return {seat: [*dict.fromkeys(hashes)][:TOKENS_MOST] for seat, hashes in found.items()}
 
 

@@ -16,7 +16,7 @@ from lacoc_server.doors.office_desk import Answer, OfficeDesk
 from lacoc_server.doors.outbox import Outbox
 from lacoc_server.doors.team_desk import TeamDesk
 from lacoc_shared.codec import encode, message_hash
-from lacoc_shared.inputs import Decide, Input, JoinSeat, LeaveSeat
+from lacoc_shared.inputs import Decide, Input, JoinSeat, KeySeat, LeaveSeat
 from lacoc_shared.keyspace import ENTER, EVENTS_LISTED, KeySpace
 from lacoc_shared.messages import (
     Done,
@@ -171,7 +171,8 @@ class CourtNetwork:
         """Take in what arrived since the last beat.
 
         A request that a door refuses is answered at once and is not among the arrivals. Nor is one
-        that gives the match no input, such as a request of the office, or where a team plays.
+        that gives the match no input, such as a request of the office, or where a team plays. Nor
+        is a key of a contestant who leaves in this beat: their robot is to stand.
 
         Args:
             now_s: monotonic time.
@@ -186,7 +187,13 @@ class CourtNetwork:
         for desk, judge in self._desks:
             arrivals += self._let_in(desk, judge)
         self._serve_fetches()
-        return arrivals
+        # Not left to the match: records of earlier versions have such keys, and they took effect.
+        leave = {one.input.seat for one in arrivals if isinstance(one.input, LeaveSeat)}
+        return [
+            one
+            for one in arrivals
+            if not (isinstance(one.input, KeySeat) and one.input.seat in leave)
+        ]
 
     def turn_away(self, why: Phrase) -> None:
         """Refuse requests that doors judge, because no beat passes; still answer who fetches data.

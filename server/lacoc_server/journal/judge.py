@@ -201,7 +201,7 @@ class Judge:
         Raises:
             UserError: if the record's messages contradict each other.
         """
-        last = last_beat(self._record)
+        last = self._record.last_whole_beat
         for number in range(last + 1):
             before = self.section
             differs = self._judge(number)
@@ -217,6 +217,8 @@ class Judge:
             if differs:
                 self.difference = Difference(number, tuple(differs))
                 break
+        if last < 0 and (differs := [*self._differs_at_the_end(last)]):
+            self.difference = Difference(0, tuple(differs))
         if self.section is not None and self.section.steps:
             yield self.section
 
@@ -236,12 +238,15 @@ class Judge:
             if differs and (broken := [one.said for one in beat.events if one.kind == "rules"]):
                 raise UserError(*broken)
             physics = self.match.physics
+            step = physics.take() if isinstance(physics, RecordedPhysics) else None
             if not isinstance(physics, RecordedPhysics):
                 self.section = None
-                if number in self._snapshots:
-                    differs.append("snapshot")
-            elif (step := physics.take()) is not None and self.section is not None:
+            elif step is not None and self.section is not None:
                 self.section.steps.append(step)
+            # A court saves physics only after a tick. Elsewhere a snapshot would begin a section
+            # with a state that no step leads to.
+            if number in self._snapshots and (step is None or step.angles is None):
+                differs.append("snapshot")
         self.beats = number + 1
         self.frames += number in self._frames
         return differs
@@ -322,9 +327,11 @@ class Judge:
     def _differs_at_the_end(self, last: int) -> Iterator[str]:
         """Yield the names of the differences between the whole judged match and its record."""
         record = self._record
-        if not _same_result(record, self._result, last):
+        if not _same_result(record, self._result):
             yield "result"
-        if any(number != last + 1 or not record.cut for number in self._events):
+        # The court may have been killed in the next beat; then that beat has messages.
+        killed_in = last + 1 if record.last_beat > last else None
+        if any(number != killed_in for number in self._events):
             yield "events-of-no-beat"
         if len(self._frames) != len(record.frames):
             yield "two-frames"
@@ -340,15 +347,6 @@ def fits_together(record: Record) -> Iterator[None]:
         raise UserError(say("replay.damaged", match=match, error=what)) from None
 
 
-def last_beat(record: Record) -> int:
-    """Return the number of the record's last complete beat.
-
-    The court answered nobody in a beat after it: it was killed in that beat.
-    """
-    sealed = not record.cut or any(beat == record.last_beat for beat, _ in record.frames[-1:])
-    return record.last_beat if sealed else record.last_beat - 1
-
-
 def header_at(record: Record, beat: int) -> Header:
     """Return the header of the segment that a beat is in."""
     return next(
@@ -356,16 +354,16 @@ def header_at(record: Record, beat: int) -> Header:
     )
 
 
-def _same_result(record: Record, again: Result | None, last: int) -> bool:
+def _same_result(record: Record, again: Result | None) -> bool:
     """Return whether the recorded result and the judged one are equal.
 
-    A result that the court never sent is not compared.
+    A result that the court never sent is not compared. Its beat has an event too.
     """
+    if any(result.beats > record.last_beat + 1 for result in record.results):
+        return False
     recorded = record.result
     if recorded is None:  # a beat of an earlier segment may have had it, unanswered
         return again is None or len(record.headers) > 1
-    if recorded.beats == last + 2 and record.cut:
-        return True
     return again is not None and same_result(record.header, recorded, again)
 
 

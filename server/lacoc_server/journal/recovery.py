@@ -9,7 +9,7 @@ from lacoc_server.journal.verdict import other_arithmetic
 from lacoc_server.match.match import Match
 from lacoc_server.world import arithmetic
 from lacoc_shared.decisions import Halt
-from lacoc_shared.inputs import THE_COURT, Decide, Input, KeySeat
+from lacoc_shared.inputs import THE_COURT, Decide, Input, JoinSeat, KeySeat
 from lacoc_shared.keyspace import ASSIGN_MAX_BYTES
 from lacoc_shared.messages import Event, HealthVerdict
 from lacoc_shared.mistakes import UserError
@@ -36,8 +36,8 @@ class Unfinished:
     """Events to publish again: the court's list of them was lost."""
     last_seqs: dict[str, int]
     """Newest sequence number in the record, by seat; newer commands must have larger numbers."""
-    token_hashes: dict[str, str]
-    """Hash of the token of each held seat, by seat."""
+    token_hashes: dict[str, list[str]]
+    """Hashes of the tokens that opened each held seat in this match, by seat, the newest first."""
     health: HealthVerdict | None
     """The newest verdict before the court was killed; None: there is none."""
     cut: Phrase | None
@@ -157,13 +157,12 @@ def _can_not_go_on(path: Path, error: UserError) -> UserError:
 
 def _as_left(record: Record, resumed: ResumedMatch, segment: int) -> Unfinished:
     match = resumed.match
-    held = [seat for seat in match.seats if seat.join]
     return Unfinished(
         match,
         segment,
         tuple(event for event in record.events if event.beat <= match.beats),
         {seat.id: _last_seq(record, seat.index) for seat in match.seats},
-        {seat.id: seat.join.token_hash for seat in held if seat.join},
+        {seat.id: _token_hashes(record, seat.index) for seat in match.seats if seat.join},
         record.health,
         record.cut,
         _other_arithmetic(record, resumed.distance),
@@ -175,6 +174,20 @@ def _other_arithmetic(record: Record, distance: float | None) -> Phrase | None:
         return None
     why = other_arithmetic(record.headers[-1].arithmetic, arithmetic.here())
     return say("resume.other-arithmetic", distance=f"{distance:.1e}", why=why)
+
+
+def _token_hashes(record: Record, seat: int) -> list[str]:
+    """Return the hashes of a seat's recorded joins, the newest first.
+
+    Each start of a court without a contest file prints a new token, and people come back with it.
+    """
+    joins = [
+        item.token_hash
+        for _, items in sorted(record.inputs.items(), reverse=True)
+        for item in reversed(items)
+        if isinstance(item, JoinSeat) and item.seat == seat
+    ]
+    return [*dict.fromkeys(joins)]
 
 
 def _last_seq(record: Record, seat: int) -> int:

@@ -5,7 +5,8 @@ and make a decision." Every decision that is carried out is an event with refere
 no event is deleted (rules 4.1).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -131,6 +132,17 @@ def _log(match: MatchState, item: Decide, name: str, did: Phrase, **data: Any) -
     )
 
 
+@contextmanager
+def _breaks_as_refusal() -> Iterator[None]:
+    """In the block, raise `Illegal` if the game refuses a marker's state, or if its code breaks."""
+    try:
+        yield
+    except NoSuchState as error:
+        raise Illegal(error.why) from None
+    except UserError as error:  # another author's code is wrong
+        raise Illegal(error.phrase) from None
+
+
 def _seat(match: MatchState, seat_id: str) -> Seat:
     for seat in match.seats:
         if seat.id == seat_id:
@@ -204,12 +216,8 @@ def _set(match: MatchState, decision: d.Set) -> Phrase:
     if decision.state not in MARKER_STATES:
         raise Illegal(say("why.no-state", state=decision.state, states=MARKER_STATES))
     index = names.index(decision.marker)
-    try:
+    with _breaks_as_refusal():
         match.history.set(index, MARKER_STATES.index(decision.state), match.next_number)
-    except NoSuchState as error:
-        raise Illegal(error.why) from None
-    except UserError as error:  # another author's code is wrong
-        raise Illegal(error.phrase) from None
     score = _score(match, match.scores())
     for seat in match.seats:
         if seat.id == decision.state:
@@ -288,7 +296,8 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
         changes: tuple[Phrase, ...] = ()
         fold = None
     elif match.history.knows(decision.event):
-        fold = match.history.without(decision.event)
+        with _breaks_as_refusal():
+            fold = match.history.without(decision.event)
         struck = _struck(match, decision.event)
         scores = match.scores(fold.state)
         vanished = [number for number, _ in fold.vanished]

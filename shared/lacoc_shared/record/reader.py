@@ -78,8 +78,22 @@ class Record:
 
     @property
     def result(self) -> Result | None:
-        """The newest result; None if the match has not ended."""
-        return self.results[-1] if self.results else None
+        """The newest result; None if the match has not ended.
+
+        A result of a beat in which the court was killed does not count: nobody was told.
+        """
+        whole = self.last_whole_beat
+        told = (one for one in reversed(self.results) if not self.cut or one.beats <= whole + 1)
+        return next(told, None)
+
+    @property
+    def last_whole_beat(self) -> int:
+        """The last complete beat.
+
+        The court answered nobody in a beat after it: it was killed in that beat.
+        """
+        sealed = not self.cut or any(beat == self.last_beat for beat, _ in self.frames[-1:])
+        return self.last_beat if sealed else self.last_beat - 1
 
     @property
     def warning(self) -> Phrase | None:

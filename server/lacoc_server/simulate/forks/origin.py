@@ -10,7 +10,6 @@ from pathlib import Path
 
 from msgspec.structs import replace
 
-from lacoc_server.journal.judge import last_beat
 from lacoc_shared import codec
 from lacoc_shared.messages import Sheet
 from lacoc_shared.mistakes import UserError
@@ -40,7 +39,7 @@ class ForkSource:
     @property
     def last_beat(self) -> int:
         """The last beat of the record from which a fork can go on."""
-        return last_beat(self.record)
+        return self.record.last_whole_beat
 
     @property
     def seats(self) -> tuple[str, ...]:
