@@ -161,21 +161,29 @@ def test_a_match_that_was_decided_without_a_game_is_opened_again(room: Room, kin
     assert wrongs(room.facts) == []
 
 
-def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
-    """The office holds a game back until a team of it has other files."""
+def call_first(room: Room) -> Called:
+    """Call the first match of the contest to court north."""
     match = compute(room.facts, FORMATS).stages[0].matches[0]
     assert match.next_seats is not None
     game = {"pairing": match.pairing.id, "game": 1}
     room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call = room.facts[-1]
+    assert isinstance(call, Called)
+    return call
+
+
+def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
+    """The office holds a game back until a team of it has other files."""
+    call = call_first(room)
     office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
     refused = SimpleNamespace(take=lambda: Refusal(say("refused.no-office-token")))
-    office._asked[room.facts[-1].id] = cast(Any, refused)
+    office._asked[call.id] = cast(Any, refused)
     office.step()
-    assert [*office.held] == [(match.pairing.id, 1)]
+    assert [*office.held] == [(call.pairing, 1)]
     office.step()
     assert office.held, "nothing has changed"
     room.store.append(
-        league_facts.new(FilesChanged, team=match.next_seats[0], files="f", reason="a wrong leg")
+        league_facts.new(FilesChanged, team=call.teams[0], files="f", reason="a wrong leg")
     )
     office.step()
     assert office.held == {}
@@ -183,11 +191,7 @@ def test_a_refused_game_is_tried_again_with_other_files(room: Room) -> None:
 
 def test_a_game_whose_call_is_over_at_its_court_is_called_again(room: Room) -> None:
     """The facts may be an older copy: then the court has played the call, and closed its match."""
-    match = compute(room.facts, FORMATS).stages[0].matches[0]
-    assert match.next_seats is not None
-    game = {"pairing": match.pairing.id, "game": 1}
-    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
-    call = room.facts[-1].id
+    call = call_first(room).id
     office = Office(room.store, room.where.entries, room.secrets.team, {}, {})
     refused = SimpleNamespace(take=lambda: Refusal(call_is_over(call)))
     office._asked[call] = cast(Any, refused)
@@ -198,11 +202,8 @@ def test_a_game_whose_call_is_over_at_its_court_is_called_again(room: Room) -> N
 
 def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> None:
     """Its court says that the match is over before the office knows its result."""
-    match = compute(room.facts, FORMATS).stages[0].matches[0]
-    assert match.next_seats is not None
-    game = {"pairing": match.pairing.id, "game": 1}
-    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
-    call = room.facts[-1].id
+    called = call_first(room)
+    call = called.id
     asked = SimpleNamespace(take=lambda: None)
     link = SimpleNamespace(
         poll=lambda: None,
@@ -216,7 +217,7 @@ def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> N
     )
     links = {"north": cast(Any, link)}
     office = Office(room.store, room.where.entries, room.secrets.team, links, {"north": "tcp/n"})
-    room.store.append(league_facts.new(Moved, pairing=match.pairing.id, court="south"))
+    room.store.append(league_facts.new(Moved, pairing=called.pairing, court="south"))
     for link.is_there, link.call, link.phase in (
         (True, call, Phase.PLAYING),
         (False, None, None),
@@ -225,20 +226,17 @@ def test_the_end_of_a_game_that_was_moved_in_play_is_waited_for(room: Room) -> N
     ):
         office.step()
         assert [one.id for one in office.contest.running] == [call]
-    link.result = CourtResult(call, "m", match.next_seats, (20, 16), "left")
+    link.result = CourtResult(call, "m", called.teams, (20, 16), "left")
     office.step()
     played = [fact for fact in room.facts if isinstance(fact, Played)]
-    assert [(one.pairing, one.scores) for one in played] == [(match.pairing.id, (20, 16))]
+    assert [(one.pairing, one.scores) for one in played] == [(called.pairing, (20, 16))]
 
 
 def test_a_court_that_can_not_be_understood_loses_its_game(
     room: Room, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is heard, but nobody knows what it has, so nobody ever would hear a result."""
-    match = compute(room.facts, FORMATS).stages[0].matches[0]
-    assert match.next_seats is not None
-    game = {"pairing": match.pairing.id, "game": 1}
-    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
+    call_first(room)
     asked = SimpleNamespace(take=lambda: None)
     link = SimpleNamespace(poll=lambda: None, is_there=True, call=None, phase=None, missing=())
     link.result, link.tell = None, lambda _: asked
@@ -255,11 +253,8 @@ def test_a_game_in_vain_ends_though_the_clock_was_set_back(
     room: Room, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The office asks a court once a second, whatever the clock of its machine says."""
-    match = compute(room.facts, FORMATS).stages[0].matches[0]
-    assert match.next_seats is not None
-    game = {"pairing": match.pairing.id, "game": 1}
-    room.store.append(league_facts.new(Called, teams=match.next_seats, court="north", **game))
-    call = room.facts[-1].id
+    called = call_first(room)
+    call = called.id
     asked = SimpleNamespace(take=Done)
     sent: list[str] = []
     link = SimpleNamespace(poll=lambda: None, is_there=True, call="", missing=(), result=None)
@@ -271,7 +266,7 @@ def test_a_game_in_vain_ends_though_the_clock_was_set_back(
     assert sent == [call]
     link.call, link.phase = call, Phase.PLAYING
     set_clocks(monkeypatch, passed_s=2, set_by_s=-600)
-    left = league_facts.new(Withdrawn, team=match.next_seats[0], reason="a broken leg")
+    left = league_facts.new(Withdrawn, team=called.teams[0], reason="a broken leg")
     room.store.append(left)
     office.step()
     assert call in sent[1:]
