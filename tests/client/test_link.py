@@ -113,6 +113,20 @@ def test_only_the_own_authority_of_an_event_is_trusted(tmp_path: Path) -> None:
         find(f"{address}/#authority={fingerprint(foreign)}")
 
 
+def test_an_authority_that_somebody_adds_to_the_own_one_is_not_trusted(tmp_path: Path) -> None:
+    """The fingerprint in the link names one certificate, and only this one is believed."""
+    other = trustme.CA()
+    pair = issue(tmp_path, other, "127.0.0.1")
+    public = PublicAddress.of(certificate=pair.certificate, private_key=pair.key)
+    foreign = other.cert_pem.bytes().decode()
+    for _ in range(50):  # only behind some certificates another one can hide
+        own = trustme.CA().cert_pem.bytes().decode()
+        if own.rpartition("\n-----END")[0].endswith("="):
+            break
+    with pages(public, own + foreign) as address, refused("link.no-pages"):
+        find(f"{address}/#authority={fingerprint(own)}")
+
+
 def test_what_is_wrong_with_the_pages_is_told() -> None:
     """No pages, other pages, and pages of another version are told apart."""
     with refused("link.no-pages"):

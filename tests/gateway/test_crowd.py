@@ -56,6 +56,17 @@ def test_a_share_of_a_crowd_stands_for_all(size: int) -> None:
     assert size * found.share <= 1.3 * HEARD_MOST + LOOKS_S
 
 
+def test_pages_that_report_unasked_end_no_count() -> None:
+    """Reports that nobody asked for are believed, but their number has an end."""
+    found, audience, watcher = crowd()
+    for _ in range(200):
+        for _ in range(80):
+            found.hear(audience, [10])
+        found.say(audience, found.watching())
+        found.pass_second()
+    assert watcher.told[-1]["watching"] < 10**9
+
+
 def test_cheers_are_counted_by_symbol_and_told_once() -> None:
     """Each second all pages are told how often each symbol was cheered since."""
     found, audience, watcher = crowd()

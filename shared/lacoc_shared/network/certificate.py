@@ -83,3 +83,12 @@ def fingerprint(certificate: str) -> str:
         ValueError: if it is not a certificate.
     """
     return hashlib.sha256(ssl.PEM_cert_to_DER_cert(certificate)).hexdigest()
+
+
+def only_first(certificates: str) -> str:
+    """Return the first certificate of a text (PEM) alone: it is all that `fingerprint` names.
+
+    Raises:
+        ValueError: if it is not a certificate.
+    """
+    return ssl.DER_cert_to_PEM_cert(ssl.PEM_cert_to_DER_cert(certificates))

@@ -63,13 +63,16 @@ test("nobody goes back before the first frame, or beyond the newest", () => {
 });
 
 test("another match, or another court of the director, is shown live", () => {
-  for (const [beat, number] of [
-    [0, 2],
-    [50, 1],
+  for (const [beat, number, court] of [
+    [0, 2, "north"],
+    [50, 1, "south"],
+    [800, 1, "south"],
   ]) {
-    const { frame, rewind } = live();
+    const { match, frame, rewind } = live();
+    match.sheet.value = { court: "north" };
     for (let passed = 100; passed <= 400; passed++) frame(passed);
     rewind.skip(-3);
+    match.sheet.value = { court };
     frame(beat, number);
     assert.equal(rewind.isBack.value, false);
     assert.equal(rewind.frame.value.beat, beat);

@@ -15,7 +15,7 @@ from lacoc_shared.contest.link import Link
 from lacoc_shared.messages import PROTOCOL
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.address import endpoint
-from lacoc_shared.network.certificate import fingerprint
+from lacoc_shared.network.certificate import fingerprint, only_first
 from lacoc_shared.words import Phrase, say
 
 PATH = "event.json"
@@ -73,8 +73,9 @@ def find(text: str) -> FoundEvent:
     claimed = _read(link, _fetched(link, trusting_all())).authority
     if _fingerprint(link, claimed) != link.authority:
         raise UserError(say("link.other-authority", url=link.pages))
-    event = _read(link, _fetched(link, ssl.create_default_context(cadata=claimed)))
-    return FoundEvent(link, msgspec.structs.replace(event, authority=claimed))
+    named = only_first(claimed)  # somebody on the way may have added an authority
+    event = _read(link, _fetched(link, ssl.create_default_context(cadata=named)))
+    return FoundEvent(link, msgspec.structs.replace(event, authority=named))
 
 
 def _fingerprint(link: Link, certificate: str) -> str:

@@ -18,6 +18,9 @@ crowd only a share of the pages reports."""
 HEARD_MOST = 200
 """How many reports of pages are wanted in `LOOKS_S`: in a larger crowd only a share of the pages
 reports."""
+_LEAST_SHARE = 1e-4
+"""The smallest share that is asked: pages that report all the same, however many, can't make the
+estimates grow without end."""
 _SAYS_S = 1.0
 _SAYS_AGAIN = 5
 
@@ -94,5 +97,6 @@ class Crowd:
     def pass_second(self) -> None:
         """Forget the cheers of this second, and compute the share of pages that should report."""
         self._cheers.clear()
-        self.share = min(1.0, HEARD_MOST / max(1.0, sum(self._heard)))
+        wanted = HEARD_MOST / max(1.0, sum(self._heard))
+        self.share = min(1.0, max(_LEAST_SHARE, wanted))
         self._heard.append(0.0)

@@ -40,7 +40,7 @@ export class Replays {
   private pause = "";
   private sinceMs = 0;
   private sinceBeat = 0;
-  private match = 0;
+  private match = "";
 
   constructor(private readonly live: Match) {
     this.rewind = new Rewind(live);
@@ -51,12 +51,13 @@ export class Replays {
   look(nowMs: number): void {
     const frame = this.live.frame.peek();
     if (!frame) return;
-    if (frame.match !== this.match) {
-      this.match = frame.match;
+    const match = `${this.live.sheet.peek()?.court}/${frame.match}`; // each court counts its own
+    if (match !== this.match) {
+      this.match = match;
       this.sinceBeat = 0;
     }
     const { name = "", waitMs = 0 } = PAUSES[frame.phase] ?? {};
-    const pause = name && `${frame.match}/${name}`;
+    const pause = name && `${match}/${name}`;
     if (pause !== this.pause) {
       this.pause = pause;
       this.sinceMs = nowMs;

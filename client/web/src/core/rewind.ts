@@ -34,6 +34,7 @@ export class Rewind implements Match {
   readonly beat = signal(0);
   readonly playback = new Playback(this);
   private frames: Frame[] = [];
+  private court: string | undefined;
 
   constructor(private readonly live: Match) {
     this.sheet = live.sheet;
@@ -107,11 +108,15 @@ export class Rewind implements Match {
 
   private keep(frame: Frame | null): void {
     const newest = this.frames.at(-1);
-    // Another match has another time; a director's cut shows another court.
-    if (!frame || (newest && (frame.match !== newest.match || frame.beat < newest.beat))) {
+    const court = this.live.sheet.peek()?.court;
+    // Another match has another time. A director's cut shows another court, whose matches have the
+    // same numbers.
+    const isOther = newest && (frame?.match !== newest.match || frame.beat < newest.beat);
+    if (!frame || isOther || court !== this.court) {
       this.frames = [];
       this.goLive();
     }
+    this.court = court;
     if (!frame || frame.beat === this.frames.at(-1)?.beat) return;
     this.frames.push(frame);
     if (this.frames[0]!.beat < frame.beat - 1.1 * KEPT_BEATS) {
