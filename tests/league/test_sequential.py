@@ -17,9 +17,10 @@ from lacoc_server.contest.league.facts import (
     StageSettings,
     Withdrawn,
 )
+from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.formats.sequential import lead
 from lacoc_server.contest.league.matches import CountedGame
-from lacoc_server.contest.league.timetable.schedule import Assignment
+from lacoc_server.contest.league.timetable.schedule import Assignment, due
 
 TEAMS = 4
 LAP = 3
@@ -63,6 +64,14 @@ def play(event: Event, **settings: object) -> Contest:
 
 def drawn(contest: Contest) -> int:
     return len(contest.stage("main").stage.drawn)
+
+
+def test_a_stage_without_a_team_is_over() -> None:
+    """All teams of the stage before it have left: it has no round, also if the file names some."""
+    event = Event(2, 1, Random(1))
+    event.begin("main", "sequential", [], rounds=6)
+    assert event.contest.stage("main").rounds_to_draw == 0
+    assert due(event.contest, FORMATS) is None
 
 
 def test_a_clear_order_ends_early_and_a_close_one_late() -> None:

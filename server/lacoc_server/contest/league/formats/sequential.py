@@ -27,8 +27,8 @@ class Sequential(DrawnByRound):
     order = ORDER
 
     def rounds(self, stage: Stage) -> int:
-        """Return the largest number of rounds that the stage can have."""
-        return stage.settings.rounds or _LAPS * _lap(stage)
+        """Return the largest number of rounds that the stage can have; 0 if no team is left."""
+        return (stage.settings.rounds or _LAPS * _lap(stage)) if stage.entries else 0
 
     def is_decided(
         self, stage: Stage, matches: Mapping[str, ContestMatch], gone: Collection[str]
