@@ -208,6 +208,8 @@ class Doors:
         by_right = [item for item in arrivals if self._has_right(item)]
         if len(by_right) != len(arrivals):
             raise StateChanged(f"taken in without a right: {arrivals}")
+        left = {a.input.seat for a in arrivals if isinstance(a.input, LeaveSeat)}
+        own = {key for key in own if key.seat not in left}  # the robot of who leaves stands
         if not own <= {a.input for a in arrivals if isinstance(a.input, KeySeat)}:
             raise StateChanged(f"a seat's own new keys were lost: {own}")
         if not arrivals and self._state() != before:
