@@ -32,7 +32,8 @@ def test_a_name_is_read_as_it_was_made(match_id: str, court: str, number: int) -
 @pytest.mark.parametrize(
     "match_id",
     ["", "m", "simulated-001", "20260501-100000-main", "20260501-100000-main-01", "main-001",
-     "20260501-100000-main-0001", "20260501-100000--001", "20260501-100000-main-001.part"],
+     "20260501-100000-main-0001", "20260501-100000--001", "20260501-100000-main-001.part",
+     "20261399-999999-main-001"],
 )  # fmt: skip
 def test_what_no_court_made_is_no_match_name(match_id: str) -> None:
     """A name that no court makes is not read as a match's name."""

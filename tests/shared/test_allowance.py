@@ -6,6 +6,16 @@ from hypothesis import strategies as st
 from lacoc_shared.network.allowance import Allowance
 
 
+def test_all_or_none() -> None:
+    """What may not pass whole takes nothing from what is left."""
+    allowance = Allowance(10, 5)
+    assert allowance.take_all(4, 1.0)
+    assert not allowance.take_all(2, 1.0)
+    assert allowance.take_all(1, 1.0)
+    assert not allowance.take_all(1, 1.0)
+    assert allowance.take_all(5, 1.5)
+
+
 def test_a_burst_then_the_rate() -> None:
     """A burst passes at once, then messages at the rate. A long pause saves up only one burst."""
     allowance = Allowance(2.0, 5)

@@ -238,10 +238,10 @@ class Judge:
             if differs and (broken := [one.said for one in beat.events if one.kind == "rules"]):
                 raise UserError(*broken)
             physics = self.match.physics
-            step = physics.take() if isinstance(physics, RecordedPhysics) else None
+            step = None
             if not isinstance(physics, RecordedPhysics):
                 self.section = None
-            elif step is not None and self.section is not None:
+            elif (step := physics.take()) is not None and self.section is not None:
                 self.section.steps.append(step)
             # A court saves physics only after a tick. Elsewhere a snapshot would begin a section
             # with a state that no step leads to.

@@ -22,3 +22,7 @@ class Allowance:
         allowed = min(wanted, self.left(now_s))
         self._left -= allowed
         return allowed
+
+    def take_all(self, wanted: int, now_s: float) -> bool:
+        """Let all of the wanted messages pass, or none; return whether they passed."""
+        return self.left(now_s) >= wanted and bool(self.take(wanted, now_s))

@@ -1,6 +1,5 @@
 """The matches of a court in a folder of records: their names, and which of them are over."""
 
-import glob
 import os
 import re
 from collections.abc import Mapping
@@ -46,19 +45,25 @@ class MatchName:
         """
         opened = datetime.now(UTC)
         if folder is not None and (matches := court_matches(folder, court)):
-            newest = datetime.strptime(next(reversed(matches)).opened, _TIME).replace(tzinfo=UTC)
+            newest = _time_of(next(reversed(matches)).opened)
             opened = max(opened, newest + timedelta(seconds=1))
-        while True:
-            name = cls(opened.strftime(_TIME), number, court)
-            if folder is None or not any(folder.glob(f"{glob.escape(str(name))}.*")):
-                return name
-            opened += timedelta(seconds=1)
+        return cls(opened.strftime(_TIME), number, court)
 
     @classmethod
     def parse(cls, match_id: str) -> "MatchName | None":
         """Read a match id into its parts; None if it is not one that a court makes."""
         found = _ID.fullmatch(match_id)
-        return found and cls(found["opened"], int(found["number"]), found["court"])
+        if found is None:
+            return None
+        try:
+            _time_of(found["opened"])
+        except ValueError:
+            return None
+        return cls(found["opened"], int(found["number"]), found["court"])
+
+
+def _time_of(opened: str) -> datetime:
+    return datetime.strptime(opened, _TIME).replace(tzinfo=UTC)
 
 
 def court_matches(folder: Path, court: str) -> dict[MatchName, dict[int, Path]]:

@@ -64,17 +64,16 @@ class _ProposalEntry(msgspec.Struct, frozen=True):
 
 _JSON: dict[str, type[msgspec.Struct]] = {"robot": RobotEntry, "file": _FileEntry}
 """What the JSON of an entry has; pages could not open a table with anything else."""
-_LONG = ("keys", *_JSON)
 
 
 def is_entry(name: object, value: object) -> bool:
     """Return whether an entry of this name may have this value."""
     if not isinstance(name, str):
         return False
-    if name in _LONG:
-        if not isinstance(value, str) or len(value) > LONG_MOST:
-            return False
-        return name not in _JSON or not value or json_entry(value, _JSON[name]) is not None
+    if name == "keys" or name in _JSON:
+        kind = _JSON.get(name)
+        is_text = isinstance(value, str) and len(value) <= LONG_MOST
+        return is_text and (not value or not kind or json_entry(str(value), kind) is not None)
     if name == "shape":
         return isinstance(value, str) and SHAPE.fullmatch(value) is not None
     place = PLACE.fullmatch(name)
@@ -108,7 +107,5 @@ def json_entry(text: str, kind: type[_S]) -> _S | None:
 
 
 def _proposer(text: str) -> str:
-    try:
-        return msgspec.json.decode(text, type=_ProposalEntry).by
-    except msgspec.DecodeError:
-        return ""
+    proposal = json_entry(text, _ProposalEntry)
+    return "" if proposal is None else proposal.by

@@ -161,9 +161,8 @@ class SharedTable:
             raise UserError(say("tables.too-large"))
         now_s = time.monotonic()
         cost = 1 + len(self._document.entries) // _COST_ENTRIES
-        if self._allowance.left(now_s) < cost:
+        if not self._allowance.take_all(cost, now_s):
             raise UserError(say("gateway.too-much"))
-        self._allowance.take(cost, now_s)
         before = self._document.entries
         try:
             is_new = self._document.merge(told.update, lambda writer: self._is_of(writer, viewer))

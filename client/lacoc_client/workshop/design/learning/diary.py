@@ -274,10 +274,8 @@ class Diary:
 
 
 def _spend(allowance: Allowance, cost: int) -> None:
-    now_s = time.monotonic()
-    if allowance.left(now_s) < cost:
+    if not allowance.take_all(cost, time.monotonic()):
         raise UserError(say("gateway.too-much"))
-    allowance.take(cost, now_s)
 
 
 async def _kept(work: asyncio.Future[_T]) -> None:

@@ -134,12 +134,13 @@ def taken_back(
         move = moves.get(call.pairing)
         begun = court.begun and court.call == call.id  # None: not known
         called_ms = call.at_ms if call.at_ms <= now_ms else 0  # else the clock was set back
-        if call.id not in stays if begun is False else in_vain(contest, call):
+        has_not_begun = begun is False
+        if call.id not in stays if has_not_begun else in_vain(contest, call):
             yield new(Recalled, pairing=call.pairing, game=call.game, reason="not needed")
         elif begun:
             continue
         elif (
-            begun is False
+            has_not_begun
             and move is not None
             and (move.court not in ("", call.court) or move.not_before_ms > now_ms)
         ):

@@ -101,8 +101,8 @@ export class Sharing {
   /** The gateway has let the page in, for the first time or again. */
   greet(opened: OpenedTable): void {
     const isOther = this.name !== null && this.name !== opened.table;
-    const isNew = !opened.state.length && !this.shared.isEmpty && !isOther;
-    const isAhead = isNew && !this.isRefused;
+    const isAlone = !opened.state.length && !isOther;
+    const isAhead = isAlone && !this.shared.isEmpty && !this.isRefused;
     this.outbox.returned();
     const isLate = this.outbox.begins && opened.state.length > 0;
     if (this.name === null || isLate || (this.epoch !== opened.epoch && !isAhead)) {
