@@ -593,6 +593,49 @@ def test_a_damaged_time_ends_what_is_read(
     assert "stops after beat 1, and is damaged at byte" in words_of(record)
 
 
+@pytest.mark.parametrize(
+    ("topic", "beat"),
+    [("frame", 5), ("snapshot", 5), ("sheet", 5), ("scene", 5), ("touch", 5), ("input", 4)],
+)
+def test_what_no_court_writes_ends_what_is_read(
+    topic: str,
+    beat: int,
+    header: MakeHeader,
+    frame: MakeFrame,
+    sheet: Sheet,
+    scene: Scene,
+    tmp_path: Path,
+) -> None:
+    """A second message of a kind in one beat, or one of an earlier beat, counts as damage.
+
+    Else a forged record could have a sheet that is proven, and another that is read.
+    """
+    writes: dict[str, Callable[[RecordWriter], None]] = {
+        "frame": lambda writer: writer.frame(5, codec.encode(frame(5))),
+        "snapshot": lambda writer: writer.snapshot(5, b"state"),
+        "sheet": lambda writer: writer.sheet(5, sheet),
+        "scene": lambda writer: writer.scene(5, scene),
+        "touch": lambda writer: writer.touch(5, Touch(((), ()), (None, None))),
+    }
+    writer = RecordWriter(tmp_path, header())
+    for write in writes.values():
+        write(writer)
+    writer.input(5, KeySeat(0, 1, 1, 2))
+    writer.input(5, KeySeat(0, 2, 1, 3))
+    if topic == "input":
+        writer.input(beat, KeySeat(0, 3, 1, 2))
+    else:
+        writes[topic](writer)
+    writer.input(6, KeySeat(0, 4, 1, 2))
+    writer.close()
+    record = Record.read(writer.path)
+    assert list(record.inputs) == [5]
+    assert record.lost
+    assert "stops after beat 5, and is damaged at byte" in words_of(record)
+    why = f"beat {beat} after beat 5" if topic == "input" else f"a second {topic} of beat 5"
+    assert why in words_of(record)
+
+
 @pytest.mark.parametrize("part", [0.0, 0.4, 0.8])
 def test_a_damaged_packed_file_says_where(part: float, tmp_path: Path, packed: Path) -> None:
     """A damaged packed file is read up to the damaged chunk; the message has the chunk's offset.

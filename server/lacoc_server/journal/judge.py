@@ -333,8 +333,6 @@ class Judge:
         killed_in = last + 1 if record.last_beat > last else None
         if any(number != killed_in for number in self._events):
             yield "events-of-no-beat"
-        if len(self._frames) != len(record.frames):
-            yield "two-frames"
 
 
 @contextmanager

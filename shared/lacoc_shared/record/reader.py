@@ -7,6 +7,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import Any, TypeVar
 
+from lacoc_shared.codec import BadMessage
 from lacoc_shared.inputs import Input
 from lacoc_shared.messages import Event, HealthVerdict, Scene, Sheet
 from lacoc_shared.mistakes import UserError
@@ -215,6 +216,8 @@ class Record:
             case "/lacoc/health":
                 self.health = message
                 return
+        self._check_order(topic, beat, message)
+        match topic:
             case "/lacoc/input":
                 self.inputs.setdefault(beat, []).append(message)
             case "/lacoc/event":
@@ -229,7 +232,31 @@ class Record:
                 self.sheets.append((beat, message))
             case "/lacoc/scene":
                 self.scenes.append((beat, message))
-        self.last_beat = max(self.last_beat, beat)
+        self.last_beat = beat
+
+    def _check_order(self, topic: str, beat: int, message: Any) -> None:
+        """Check that a court can have written a message of a beat at this place of the record.
+
+        Else a forger could write two sheets of a beat: one for the proof, one for a reader that
+        takes the first.
+
+        Raises:
+            BadMessage: if the message is of a beat before the last one, or if its beat already
+                has a message that a beat has only once.
+        """
+        if not self.headers or beat < max(self.last_beat, self.headers[-1].first_beat):
+            raise BadMessage(f"beat {beat} after beat {self.last_beat}")
+        if topic == "/lacoc/event" and message.beat != beat:
+            raise BadMessage(f"an event of beat {message.beat} in beat {beat}")
+        once: dict[str, Sequence[tuple[int, Any]]] = {
+            "/lacoc/frame": self.frames,
+            "/lacoc/snapshot": self.snapshots,
+            "/lacoc/sheet": self.sheets,
+            "/lacoc/scene": self.scenes,
+        }
+        is_second = any(number == beat for number, _ in once.get(topic, ())[-1:])
+        if is_second or (topic == "/lacoc/touch" and beat in self.touches):
+            raise BadMessage(f"a second {topic.removeprefix('/lacoc/')} of beat {beat}")
 
     def _begin_segment(self, path: Path, header: Header) -> None:
         if self.headers and header.match_id != self.header.match_id:

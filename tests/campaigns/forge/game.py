@@ -11,6 +11,8 @@ import shutil
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -240,21 +242,17 @@ def written(record: Record, path: Path, change: Change | None = None) -> None:
     def at(beat: int) -> RecordWriter:
         return writers[-1] if second is not None and beat >= second else writers[0]
 
+    writes: list[tuple[int, Callable[[], None]]] = []
     for beat, inputs in record.inputs.items():
-        for item in inputs:
-            at(beat).input(beat, item)
-    for beat, frame in record.frames:
-        at(beat).frame(beat, frame)
-    for event in record.events:
-        at(event.beat).event(event)
-    for beat, touch in record.touches.items():
-        at(beat).touch(beat, touch)
-    for beat, data in record.snapshots:
-        at(beat).snapshot(beat, data)
-    for beat, sheet in record.sheets:
-        at(beat).sheet(beat, sheet)
-    for beat, scene in record.scenes:
-        at(beat).scene(beat, scene)
+        writes += ((beat, partial(at(beat).input, beat, item)) for item in inputs)
+    writes += ((beat, partial(at(beat).frame, beat, frame)) for beat, frame in record.frames)
+    writes += ((event.beat, partial(at(event.beat).event, event)) for event in record.events)
+    writes += ((beat, partial(at(beat).touch, beat, one)) for beat, one in record.touches.items())
+    writes += ((beat, partial(at(beat).snapshot, beat, one)) for beat, one in record.snapshots)
+    writes += ((beat, partial(at(beat).sheet, beat, sheet)) for beat, sheet in record.sheets)
+    writes += ((beat, partial(at(beat).scene, beat, scene)) for beat, scene in record.scenes)
+    for _, write in sorted(writes, key=itemgetter(0)):
+        write()
     if record.result is not None:
         writers[-1].result(record.result)
     if change is not None and change.health is not None:

@@ -404,12 +404,6 @@ def _frame_removed(copy: _Copy) -> None:
     del copy.record.frames[copy.frame()]
 
 
-def _frame_twice(copy: _Copy) -> None:
-    at = copy.frame()
-    copy.record.frames.insert(at, copy.record.frames[at])
-    copy.change(at, poses=copy.moved(copy[at].poses, copy.move(at)))
-
-
 def _clock(copy: _Copy) -> None:
     at = copy.frame(Phase.PLAYING)
     copy.change(at, clock_ticks=copy[at].clock_ticks + 1)
@@ -451,7 +445,6 @@ _FORGERIES: dict[str, Callable[[_Copy], None]] = {
     "a touch": _touch,
     "the board": _board,
     "a frame removed": _frame_removed,
-    "a frame twice": _frame_twice,
     "the clock": _clock,
     "the setup": _setup,
     "the sheet": _sheet,
