@@ -219,6 +219,25 @@ def test_files_of_a_team_that_is_declined_meanwhile_do_not_come_back(
     assert room.states() == {}
 
 
+def test_a_page_of_a_team_that_is_declined_meanwhile_gets_no_new_token(
+    room: Room, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While a team's page asks for its entry, the organiser may decline the team."""
+    first = room.ask(Apply(secret=CODE, team="Bees", files=sample()))
+    assert isinstance(first, OwnEntry)
+    found = room.desk.admission.team
+
+    def declined_then(secret: str, now_s: float) -> str:
+        team = found(secret, now_s)
+        monkeypatch.undo()
+        room.ask(Decline(secret=KEY, teams=(team,)))
+        return team
+
+    monkeypatch.setattr(room.desk.admission, "team", declined_then)
+    assert said(room.ask(Own(secret=first.token))) == "desk.no-such-team"
+    assert room.where.contest.secrets.team_of(first.token) is None
+
+
 def test_a_flood_of_applications_is_cleared_at_once(room: Room) -> None:
     """The organiser declines all that wait with one act, and makes another event code.
 

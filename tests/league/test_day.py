@@ -16,10 +16,12 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     Moved,
+    NoShow,
     Paused,
     Planned,
     Played,
     Recalled,
+    Replaced,
     Replay,
     Resumed,
     Shifted,
@@ -276,6 +278,55 @@ def test_a_substitute_takes_a_place_that_nobody_has_played_in() -> None:
     cup.add(Substituted, team="t001", substitute="t003", reason="no")
     (view,) = cup.contest.stages
     assert view.stage.entries == ("t001", "late", "t003", "t004")
+
+
+def test_who_has_a_result_by_a_decision_keeps_its_place() -> None:
+    """Also who won because nobody came; for the team that did not come a substitute may come.
+
+    If its game is to be played after all, it can be replaced again.
+    """
+    cup = Cup("single-knockout")
+    cup.add(Entered, team="late", reason="a reserve", files="x")
+    first, second = (match.pairing.id for match in cup.contest.stages[0].matches[:2])
+    ruled = {"pairing": first, "game": 1, "teams": ("t001", "t004"), "reason": "agreed"}
+    cup.add(Replaced, scores=(9, 1), outcome="left", **ruled)
+    cup.add(NoShow, pairing=second, team="t003", opponent="t002")
+    entries = cup.contest.stages[0].stage.entries
+    for number, (team, is_replaced) in enumerate(
+        (("t001", False), ("t004", False), ("t002", False), ("t003", True))
+    ):
+        trial = Cup("single-knockout")
+        trial.facts = list(cup.facts)
+        trial.add(Substituted, team=team, substitute="late", reason="ill")
+        assert (trial.contest.stages[0].stage.entries != entries) is is_replaced, number
+    undrawn = cup.add(Undrawn, stage="cup", reason="a late team")
+    assert [(one.fact, one.why.code) for one in cup.contest.unused] == [
+        (undrawn.id, "league.played-already")
+    ]
+    cup.add(Replay, **ruled)
+    cup.add(Substituted, team="t001", substitute="late", reason="ill")
+    assert cup.contest.stages[0].stage.entries == ("late", "t002", "t003", "t004")
+
+
+def test_who_did_not_come_in_one_match_may_come_to_another() -> None:
+    """A correction gives a team another opponent: it is not absent in the new match."""
+    cup = Cup("single-knockout")
+    for pairing in ("cup:w1.1", "cup:w1.2"):
+        play_open(cup, pairing)
+    final = cup.contest.stages[0].matches[-1]
+    absent, other = final.teams
+    assert absent
+    assert other
+    cup.add(NoShow, pairing=final.pairing.id, team=absent, opponent=other)
+    assert cup.contest.stages[0].matches[-1].winner == other
+    games = {"pairing": "cup:w1.2", "game": 1, "reason": "miscounted"}
+    seats = cup.contest.matches["cup:w1.2"].games[0].teams
+    outcome = "left" if seats[1] == other else "right"
+    cup.add(Replaced, teams=seats, scores=(5, 5), outcome=outcome, **games)
+    now = cup.contest.stages[0].matches[-1]
+    assert now.teams[0] == absent
+    assert now.state == "open"
+    assert [one.why.code for one in cup.contest.unused][-1] == "league.other-teams"
 
 
 @pytest.mark.parametrize("substitute", ["t002", "nobody", "t001"])

@@ -232,7 +232,8 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
         if wanted.team not in match.teams:
             teams = [first, second]
             raise UserError(say("decide.which-team", pairing=wanted.pairing, teams=teams))
-        return new(NoShow, team=wanted.team, **about)
+        opponent = second if wanted.team == first else first
+        return new(NoShow, team=wanted.team, opponent=opponent, **about)
     if wanted.kind == "void":
         return new(Voided, teams=(first, second), **about)
     if (

@@ -110,12 +110,11 @@ class Desk:
             return self._apply(asked)
         if isinstance(asked, ChangeFiles | Own):
             team = self.admission.team(asked.secret, now_s)
-            if isinstance(asked, Own):
-                with self._one:
-                    return entering.own(self._book, team)
-            entry = self._weighed(team, asked.files)
+            entry = None if isinstance(asked, Own) else self._weighed(team, asked.files)
             with self._one:
                 self.admission.team(asked.secret, now_s)  # it may have been declined meanwhile
+                if entry is None:
+                    return entering.own(self._book, team)
                 return entering.change(self._book, team, entry)
         if isinstance(asked, CourtDay):
             there = asked.court in self._book.where.contest.courts

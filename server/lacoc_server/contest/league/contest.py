@@ -33,7 +33,7 @@ from lacoc_server.contest.league.matches import (
     CountedGame,
     StageRules,
     counting,
-    fact_teams,
+    is_about,
     resolve,
 )
 from lacoc_server.contest.league.standings import Table
@@ -386,10 +386,7 @@ def _note_unused(
     for fact in about:
         if match is None:
             unused[fact.id] = say("league.unknown-pairing", pairing=fact.pairing)
-        elif isinstance(fact, NoShow):
-            if fact.team not in teams:
-                unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
-        elif fact_teams(fact) and {*fact_teams(fact)} != {*teams}:
+        elif not isinstance(fact, Recalled | Moved) and not is_about(fact, teams):
             unused[fact.id] = say("league.other-teams", pairing=fact.pairing)
         elif isinstance(fact, Played | Replaced) and fact.id not in used:
             unused[fact.id] = _why_unused(match, fact, counted.get(fact.game), is_void)

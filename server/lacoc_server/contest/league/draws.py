@@ -13,13 +13,17 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
+    NoShow,
     Planned,
     Played,
     Recalled,
+    Replaced,
+    Replay,
     RoundDrawn,
     Substituted,
     Undrawn,
     Unplanned,
+    Voided,
     Withdrawn,
     stage_of,
 )
@@ -123,6 +127,9 @@ def drawn_stages(
     stages: dict[str, tuple[Planned, Stage]] = {}
     played: set[tuple[str, str]] = set()
     """Each stage with each team that has played in it."""
+    ruled: dict[str, tuple[str, ...]] = {}
+    """By pairing: the teams that have a result by a decision. A team that did not come is not among
+    them: a substitute may still come for it."""
     called: set[tuple[str, int]] = set()
     """The games that are at a court, by pairing and number."""
     for fact in facts:
@@ -132,16 +139,23 @@ def drawn_stages(
             called.discard((fact.pairing, fact.game))
         if isinstance(fact, Played):
             played |= {(stage_of(fact.pairing), team) for team in fact.teams}
+        elif isinstance(fact, Replaced | Voided):
+            ruled[fact.pairing] = fact.teams
+        elif isinstance(fact, NoShow):
+            ruled[fact.pairing] = (*ruled.get(fact.pairing, ()), fact.opponent)
+        elif isinstance(fact, Replay):
+            ruled.pop(fact.pairing, None)
         elif isinstance(fact, Substituted) and fact.id not in unused:
+            has_result = {name for name, team in played | _each(ruled) if team == fact.team}
             for name, (plan, stage) in stages.items():
-                if (name, fact.team) not in played:
+                if name not in has_result:
                     stages[name] = plan, _substituted(stage, fact)
         elif isinstance(fact, Undrawn):
             if fact.stage not in stages:
                 unused[fact.id] = say("league.not-drawn", stage=fact.stage)
             elif (
                 fact.stage != [*stages][-1]
-                or any(name == fact.stage for name, _ in played)
+                or any(name == fact.stage for name, _ in played | _each(ruled))
                 or any(stage_of(pairing) == fact.stage for pairing, _ in called)
             ):
                 unused[fact.id] = say("league.played-already", stage=fact.stage)
@@ -176,6 +190,11 @@ def drawn_stages(
             drawn = (*stage.drawn, fact.pairs)
             stages[fact.stage] = (plan, msgspec.structs.replace(stage, drawn=drawn))
     return [*stages.values()], [plan for name, plan in plans.items() if name not in stages]
+
+
+def _each(ruled: Mapping[str, tuple[str, ...]]) -> set[tuple[str, str]]:
+    """Return each stage with each team of its ruled matches."""
+    return {(stage_of(pairing), team) for pairing, teams in ruled.items() for team in teams}
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:

@@ -279,6 +279,8 @@ class NoShow(Fact, frozen=True, kw_only=True, tag="no-show"):
 
     pairing: Name
     team: Name
+    opponent: Annotated[str, msgspec.Meta(max_length=64)] = ""
+    """The other team of the match; "": not known, an older version wrote the fact."""
     reason: str = ""
 
 

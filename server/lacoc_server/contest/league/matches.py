@@ -229,10 +229,10 @@ def counting(
     is_void = False
     absent: set[str] = set()
     for fact in facts:
-        if isinstance(fact, NoShow):
-            absent |= {fact.team} & {*teams}
-        elif {*fact_teams(fact)} != {*teams}:
+        if not is_about(fact, teams):
             continue
+        if isinstance(fact, NoShow):
+            absent.add(fact.team)
         elif isinstance(fact, Voided):
             is_void = True
         elif isinstance(fact, Replay):
@@ -251,9 +251,14 @@ def counting(
     return games, is_void, absent
 
 
-def fact_teams(fact: OfMatch) -> tuple[str, ...]:
-    """Return both teams that a fact names in `teams`; a fact without this field gives ()."""
-    return getattr(fact, "teams", ())
+def is_about(fact: OfMatch, teams: tuple[str, str]) -> bool:
+    """Return whether a fact names these two teams, in any order, as those of its match.
+
+    A `Recalled` and a `Moved` name no teams.
+    """
+    if isinstance(fact, NoShow):
+        return fact.team in teams and fact.opponent in ("", *teams)
+    return {*getattr(fact, "teams", ())} == {*teams}
 
 
 def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -> CountedGame:
