@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from fractions import Fraction
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -21,15 +22,18 @@ from show import decide, playing
 from venue import Venue
 from waiting import LIMIT_S, until
 
-from lacoc_client.film.live import sender, sending
+from lacoc_client.commands.film import look_of
+from lacoc_client.film import camera_page
+from lacoc_client.film.live import sender, sending, stream
 from lacoc_client.film.live.mixer import Mixer
 from lacoc_client.film.live.pace import PicturePace
 from lacoc_client.film.live.sender import LivePicture, Sender
 from lacoc_client.film.live.sending import SOUND_HZ, NotSent, Part, SendingProcess
 from lacoc_client.film.live.target import Target, target
+from lacoc_client.film.look import Quality, View
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, render
 
 SIZE, FPS = (320, 180), 10
 SCORE = np.s_[0:24, 110:145]
@@ -56,7 +60,7 @@ def test_a_pace_never_falls_behind(fps: int, busy_s: list[float]) -> None:
 )
 def test_a_mixer_adds_sounds_at_their_time(sounds: list[tuple[int, int]], step: int) -> None:
     """All sounds that are known in time are in the track, where they begin."""
-    mixer, whole = Mixer(), np.zeros((500, 2), int)
+    mixer, whole = Mixer(500), np.zeros((500, 2), int)
     for at, length in sounds:
         sound = np.full((length, 2), (7, -9), "<i2")
         mixer.add(at, sound.tobytes())
@@ -65,11 +69,16 @@ def test_a_mixer_adds_sounds_at_their_time(sounds: list[tuple[int, int]], step: 
     assert np.array_equal(np.frombuffer(taken, "<i2").reshape(-1, 2), whole)
 
 
-def test_a_sound_that_comes_late_is_heard_at_once() -> None:
-    """A sound whose time was taken already begins with the next sample."""
-    mixer = Mixer()
+@pytest.mark.parametrize("at", [0, 13, 10**12, -(10**12)])
+def test_a_sound_at_a_wrong_time_is_heard_at_once(at: int) -> None:
+    """A sound whose time was taken already, or is far away, begins with the next sample.
+
+    Such a time comes from a clock that was set: the memory for all samples until then is never
+    taken.
+    """
+    mixer = Mixer(10)
     assert mixer.take(2) == bytes(8)
-    mixer.add(0, np.array([[5, 6]], "<i2").tobytes())
+    mixer.add(at, np.array([[5, 6]], "<i2").tobytes())
     assert np.frombuffer(mixer.take(4), "<i2").tolist() == [5, 6, 0, 0]
 
 
@@ -237,6 +246,39 @@ def venue(tmp_path: Path, with_browser: str) -> Iterator[Venue]:
     """Give a court and its gateway."""
     with ExitStack() as stack:
         yield Venue(tmp_path, stack)
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("with_browser")
+def test_the_page_of_an_error_is_not_streamed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A proxy whose gateway is gone answers with an error: the stream waits for the real page."""
+    answers = iter([502, 503])
+
+    class Proxy(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(next(answers, 200))
+            self.end_headers()
+            self.wfile.write(b"<!doctype html><title>page</title>")
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    monkeypatch.setattr(stream, "_AGAIN_S", 0.05)
+    told: list[Phrase] = []
+    with HTTPServer(("127.0.0.1", 0), Proxy) as proxy:
+        threading.Thread(target=proxy.serve_forever, daemon=True).start()
+        source = stream.Streamed(f"http://127.0.0.1:{proxy.server_port}")
+        look = look_of("320x180", View.AUTO, Quality.LOW, True, None)
+        running = stream._Streaming(source, target(f"{tmp_path}/a.mkv"), look, FPS, told.append)
+        with camera_page.window(look) as (page, _):
+            running._open(page, lambda: False)
+            assert page.title() == "page"
+        running.sender.end()
+        proxy.shutdown()
+    assert [one.code for one in told] == ["stream.no-page", "stream.page-back"]
+    assert "HTTP 502" in render(told[0])
 
 
 def streaming(venue: Venue, where: str, stack: ExitStack) -> Lacoc:

@@ -362,6 +362,28 @@ def test_a_lost_context_comes_back(stand: Stand) -> None:
 
 
 @pytest.mark.long
+def test_a_driver_that_restarts_slowly_leaves_the_map(stand: Stand) -> None:
+    """While the graphics driver gives no new context the map is drawn, and then the field again."""
+    stand.open("othello.bin", speed=0, q="low")
+    stand.page.evaluate(
+        """() => {
+          const get = HTMLCanvasElement.prototype.getContext;
+          const lost = document.querySelector("canvas").getContext("webgl2");
+          HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+            return kind.startsWith("webgl") ? null : get.call(this, kind, ...more);
+          };
+          window.driverIsBack = () => { HTMLCanvasElement.prototype.getContext = get; };
+          lost.getExtension("WEBGL_lose_context").loseContext();
+        }"""
+    )
+    stand.page.wait_for_function("__lacoc.view.quality === 'map'")
+    stand.page.evaluate("driverIsBack()")
+    stand.page.wait_for_function("__lacoc.view.quality === 'low'")
+    stand.next_frames()
+    assert share_of(stand.pixels(), BLUE) > 0.03
+
+
+@pytest.mark.long
 def test_who_cannot_be_steered_is_grey(stand: Stand, site: Path) -> None:
     """The robot of a silent seat is drawn grey."""
     frame = Recorded(site, "flag-strike").frames[0]

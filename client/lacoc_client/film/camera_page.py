@@ -125,8 +125,11 @@ def camera_page(address: str, look: Look) -> Iterator[CameraPage]:
     Raises:
         UserError: if there is no browser, it does not start, or the page can't show the record.
     """
-    with window(look) as (page, paced):
-        yield CameraPage(page, address, paced)
+    try:
+        with window(look) as (page, paced):
+            yield CameraPage(page, address, paced)
+    except Error as error:
+        raise UserError(say("film.page-failed", error=told(error))) from None
 
 
 @contextmanager
@@ -140,7 +143,8 @@ def window(look: Look) -> Iterator[tuple[Page, bool]]:
         The page, and whether its frames are made only when they are asked for.
 
     Raises:
-        UserError: if there is no browser, it does not start, or it fails while the block runs.
+        UserError: if there is no browser, or it does not start.
+        Error: if it fails while the block runs.
     """
     with Scratch("browser") as folder, _started(folder) as playwright:
         program = find(playwright.chromium.executable_path)
@@ -153,8 +157,6 @@ def window(look: Look) -> Iterator[tuple[Page, bool]]:
             )
             context.set_default_timeout(1000 * _WAIT_S)
             yield empty_page(browser, context, look)
-        except Error as error:
-            raise UserError(say("film.page-failed", error=_told(error))) from None
         finally:
             browser.close()
 
@@ -209,8 +211,9 @@ def _launched(playwright: Playwright, program: str) -> Browser:
             handle_sighup=False,
         )
     except Error as error:
-        raise UserError(say("film.browser-failed", program=program, error=_told(error))) from None
+        raise UserError(say("film.browser-failed", program=program, error=told(error))) from None
 
 
-def _told(error: Error) -> str:
+def told(error: Error) -> str:
+    """Return the first line of a browser's error."""
     return printable(error.message.partition("\n")[0], 200)

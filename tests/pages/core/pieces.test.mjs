@@ -116,6 +116,27 @@ describe("pieces", () => {
     assert.deepEqual(numbers(shown).slice(0, 2), [0, 1]);
   });
 
+  test("an answer that never comes does not hold the page up for ever", async () => {
+    mock.method(AbortSignal, "timeout", (ms) => {
+      const ending = new AbortController();
+      setTimeout(() => ending.abort(new Error("too late")), ms);
+      return ending.signal;
+    });
+    const gateway = new Gateway();
+    await pass(5000);
+    const { shown, pieces } = watching(gateway);
+    await pass(5000);
+    const { answer } = gateway;
+    globalThis.fetch = (_, { signal }) =>
+      new Promise((_, fail) => signal.addEventListener("abort", () => fail(signal.reason)));
+    await pass(3000);
+    globalThis.fetch = (url) => answer.call(gateway, url);
+    const before = numbers(shown).length;
+    await pass(25_000);
+    pieces.end();
+    assert.ok(numbers(shown).length > before);
+  });
+
   test("with another run it begins again, and after an outage goes on", async () => {
     const gateway = new Gateway();
     await pass(5000);

@@ -7,9 +7,14 @@ class Mixer:
     """A stereo sound track that is taken piece by piece, from its beginning.
 
     Where nothing sounds it is silent.
+
+    Args:
+        most_ahead: a sound that begins more samples than this after the next one that is taken has
+            a wrong time.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most_ahead: int) -> None:
+        self._most_ahead = most_ahead
         self._taken = 0
         self._mixed = np.zeros((0, 2), np.int32)
 
@@ -18,11 +23,13 @@ class Mixer:
 
         Args:
             at: number of the sample at which the sound begins. If that part of the track was taken
-                already, the sound begins with the next sample that is taken.
+                already, or the time is wrong, the sound begins with the next sample that is taken.
             samples: of the left and the right side in turn, each with 16 bits, little endian.
         """
         sound = np.frombuffer(samples, "<i2").reshape(-1, 2)
-        begin = max(0, at - self._taken)
+        begin = at - self._taken
+        if not 0 <= begin <= self._most_ahead:
+            begin = 0
         self._reach(begin + len(sound))
         self._mixed[begin : begin + len(sound)] += sound
 

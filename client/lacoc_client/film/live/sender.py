@@ -14,6 +14,9 @@ from lacoc_shared.words import Phrase, say
 _WAITING_MOST = 4
 """How many pictures may wait; further pictures are left out, so that a stream never falls
 behind."""
+_AHEAD_MOST_S = 60
+"""Pages tell of sounds of the next seconds. A sound later than this [s] was timed by a clock that
+was set since."""
 _AGAIN_S = 2.0
 _LOOK_S = 0.2
 
@@ -43,7 +46,7 @@ class Sender:
     ) -> None:
         self._target, self._size, self._fps, self._tell = target, size, fps, tell
         self._waiting: Queue[LivePicture] = Queue(_WAITING_MOST)
-        self._mixer, self._mixing = Mixer(), threading.Lock()
+        self._mixer, self._mixing = Mixer(_AHEAD_MOST_S * SOUND_HZ), threading.Lock()
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self.sent = 0

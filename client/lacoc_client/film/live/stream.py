@@ -9,14 +9,14 @@ from urllib.parse import urlencode
 
 from playwright.sync_api import Error, Page
 
-from lacoc_client.film.camera_page import window
+from lacoc_client.film.camera_page import told, window
 from lacoc_client.film.live.pace import PicturePace
 from lacoc_client.film.live.sender import LivePicture, Sender
 from lacoc_client.film.live.sending import SOUND_HZ
 from lacoc_client.film.live.target import Target
 from lacoc_client.film.look import Look
 from lacoc_client.film.shots import JPEG, Shots
-from lacoc_shared.mistakes import UserError, printable
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
 _HELD_S = 0.4
@@ -65,8 +65,8 @@ class _Streaming:
     ) -> None:
         self._address = source.address(look)
         self._look, self._target, self._tell = look, target, tell
-        self._pace = PicturePace(fps, time.monotonic())
-        self._began_s = time.time()
+        self._began_s = time.monotonic()
+        self._pace = PicturePace(fps, self._began_s)
         self.sender = Sender(target, (look.width, look.height), fps, tell)
         self._held: deque[LivePicture] = deque()
         self._sounds_s = 0.0
@@ -80,17 +80,38 @@ class _Streaming:
             UserError: if there is no browser, the target is a file that can't be written, or
                 FFmpeg lacks the protocol of the address.
         """
+        has_begun = False
         while not stopping():
-            with window(self._look) as (page, paced):
-                shots = Shots(page, paced)
-                try:
-                    self._open(page, stopping)
-                    while not stopping():
-                        self._picture(page, shots)
-                        self._report(report)
-                except Error as error:  # the browser crashed
-                    self._tell(say("stream.browser-gone", why=_told(error)))
-                    time.sleep(_AGAIN_S)
+            try:
+                with window(self._look) as (page, paced):
+                    has_begun = True
+                    self._show(page, Shots(page, paced), stopping, report)
+            except Error as error:
+                self._tell(say("stream.browser-gone", why=told(error)))
+                time.sleep(_AGAIN_S)
+            except UserError as error:
+                if not has_begun or self.sender.failed is not None:
+                    raise
+                self._tell(error.phrase)  # another browser does not start, perhaps for a time only
+                time.sleep(_AGAIN_S)
+
+    def _show(
+        self,
+        page: Page,
+        shots: Shots,
+        stopping: Callable[[], bool],
+        report: Callable[[Report], None],
+    ) -> None:
+        """Draw the page and send its pictures until the stream is told to stop.
+
+        Raises:
+            Error: if the browser has ended.
+            UserError: if the stream can't be sent.
+        """
+        self._open(page, stopping)
+        while not stopping():
+            self._picture(page, shots)
+            self._report(report)
 
     def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
         """Open the broadcast's page; try again until it opens.
@@ -101,18 +122,20 @@ class _Streaming:
         is_away = False
         while not stopping():
             try:
-                page.goto(self._address, wait_until="commit")
+                reply = page.goto(self._address, wait_until="commit")
+                why = "" if reply is None or reply.ok else f"HTTP {reply.status}"
             except Error as error:
                 if page.is_closed():
                     raise
-                if not is_away:
-                    self._tell(say("stream.no-page", address=self._address, why=_told(error)))
-                is_away = True
-                time.sleep(_AGAIN_S)
-            else:
+                why = told(error)
+            if not why:
                 if is_away:
                     self._tell(say("stream.page-back", address=self._address))
                 return
+            if not is_away:
+                self._tell(say("stream.no-page", address=self._address, why=why))
+            is_away = True
+            time.sleep(_AGAIN_S)
 
     def _picture(self, page: Page, shots: Shots) -> None:
         """Wait until the stream's next picture is due, and take it.
@@ -129,9 +152,11 @@ class _Streaming:
         now_s = time.monotonic()
         if now_s - self._sounds_s > _SOUNDS_S:
             self._sounds_s = now_s
+            # The page says when by the time of the day, which may be set; the pace's clock never
+            # leaps.
+            offset_s = time.monotonic() - time.time() - self._began_s
             for at_ms, samples in page.evaluate(_SOUNDS, SOUND_HZ):
-                # The page says when by the time of the day; the pace's clock never leaps.
-                self.sender.hear(at_ms / 1000 - self._began_s, base64.b64decode(samples))
+                self.sender.hear(at_ms / 1000 + offset_s, base64.b64decode(samples))
         while self._held and self._pace.time_s(self._held[0].number) < now_s - _HELD_S:
             self.sender.show(self._held.popleft())
         if self.sender.failed is not None:
@@ -147,10 +172,6 @@ class _Streaming:
         new, missed = sent - self._told[0], left_out - self._told[1]
         self._told = sent, left_out
         report(Report(new / passed_s, missed / max(1, new + missed)))
-
-
-def _told(error: Error) -> str:
-    return printable(error.message.partition("\n")[0], 200)
 
 
 def stream(

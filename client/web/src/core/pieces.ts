@@ -6,6 +6,7 @@
  */
 
 import { decode } from "@msgpack/msgpack";
+import { answerOf } from "./answer";
 import { type Message, PIECE_MS, type PiecesNow, readMessage } from "./wire";
 
 /** A message, and when it is shown, by `performance.now()`. */
@@ -100,7 +101,7 @@ export class Pieces {
   /** Get the next piece; return how long to wait then [ms]. */
   private async step(): Promise<number> {
     if (performance.now() - this.lookedMs > LOOK_MS && !(await this.look())) return AGAIN_MS;
-    const reply = await fetch(`${this.url}/${this.run}/${this.next}`);
+    const reply = await answerOf(`${this.url}/${this.run}/${this.next}`);
     if (reply.status === 404) {
       // It is not whole yet, or nobody has it any more.
       this.lookedMs = Number.NEGATIVE_INFINITY;
@@ -114,7 +115,7 @@ export class Pieces {
 
   /** Look which pieces there are; false: there is nothing to ask for yet. */
   private async look(): Promise<boolean> {
-    const reply = await fetch(`${this.url}/now.json`);
+    const reply = await answerOf(`${this.url}/now.json`);
     if (!reply.ok || this.ended) return false;
     const { run, closed, room, share } = (await reply.json()) as PiecesNow;
     if (performance.now() - this.spokenMs > LOOK_MS) this.speak(share);

@@ -95,6 +95,7 @@ const UNEVEN_MS = 30;
 /** A leap in time of more beats shows no movements. */
 const LEAP_BEATS = 100;
 const RETRY_MS = 1000;
+const WEBGL_AGAIN_MS = 5000;
 const DRAG_PX = 5;
 const EDGE = 0.96;
 const FRAME_MS = 180;
@@ -250,6 +251,7 @@ export class Viewer implements Exposed {
       }
       if (!made) {
         this.noWebgl ||= this.options.camera !== "map";
+        if (fineness) this.awaitWebgl();
         const canvas = newCanvas();
         this.map = new TopView(canvas);
         this.show(canvas);
@@ -265,6 +267,16 @@ export class Viewer implements Exposed {
     } finally {
       this.building = false;
     }
+  }
+
+  /** A driver that restarts gives no context for some time: the map is drawn until it does. */
+  private awaitWebgl(): void {
+    setTimeout(() => {
+      if (this.ended) return;
+      if (!document.createElement("canvas").getContext("webgl2")) return this.awaitWebgl();
+      this.noWebgl = false;
+      this.drop();
+    }, WEBGL_AGAIN_MS);
   }
 
   private async stageOf(fineness: Fineness): Promise<Stage | null> {

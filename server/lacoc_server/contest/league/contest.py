@@ -11,7 +11,6 @@ from lacoc_server.contest.league.facts import (
     Called,
     Closed,
     Moved,
-    NoShow,
     OfDecision,
     OfMatch,
     Paused,

@@ -1,6 +1,7 @@
 /** Gets the newest sheet of a contest again and again: from a gateway, or from a published folder. */
 
 import { signal } from "@preact/signals";
+import { answerOf } from "../answer";
 import { type ContestSheet, stateOf, VERSION } from "./sheet";
 
 /** Beside the page, wherever that is. */
@@ -54,7 +55,7 @@ export class Feed {
   async #get(): Promise<Trouble | null> {
     try {
       // The browser asks whether its copy is still the newest, and gets it again only if not.
-      const response = await fetch(ADDRESS, { cache: "no-cache" });
+      const response = await answerOf(ADDRESS, { cache: "no-cache" });
       if (response.status === 404) return "missing";
       if (!response.ok) return "lost";
       const text = await response.text();

@@ -1,6 +1,7 @@
 /** How the games stand that are on the courts now: asked of the gateway while somebody looks. */
 
 import { signal } from "@preact/signals";
+import { answerOf } from "../answer";
 import type { CourtScore } from "../desk.gen";
 
 const ADDRESS = "courts.json";
@@ -27,7 +28,7 @@ export class LiveScores {
   private async look(): Promise<void> {
     if (!document.hidden) {
       try {
-        const response = await fetch(ADDRESS, { cache: "no-cache" });
+        const response = await answerOf(ADDRESS, { cache: "no-cache" });
         this.scores.value = response.ok ? ((await response.json()) as CourtScore[]) : [];
       } catch {
         this.scores.value = []; // the page says already that nobody answers
