@@ -535,6 +535,41 @@ def test_what_is_pasted_dropped_and_composed(
 
 
 @pytest.mark.long
+def test_what_is_being_typed_is_saved_and_no_step_yet(
+    open_page: OpenPage, address: tuple[str, str], sample: Path
+) -> None:
+    """Ctrl-S takes a number that is being typed, too. Until then leaving asks.
+
+    Ctrl-Z takes back what is typed, and no step before it. Two saves in a row are no conflict.
+    """
+    page = designer(open_page, address)
+    leaves = "dispatchEvent(new Event('beforeunload', { cancelable: true }))"
+    page.go(1, 2)
+    page.type("11")
+    page.saves()
+    assert page.page.evaluate(leaves)
+    page.go(4, 4)
+    before = page.cell(4, 4)
+    page.page.keyboard.type("5")
+    assert not page.page.evaluate(leaves)
+    page.press("Control+Shift+z", "Control+z")
+    assert page.page.evaluate(leaves)
+    page.cell_is(4, 4, before)
+    page.cell_is(1, 2, "11")
+    page.go(1, 0)
+    page.page.keyboard.type("33")
+    page.press("Control+s", "Control+s")
+    expect(page.find(".bar .name small")).to_have_text("saved")
+    page.page.keyboard.type("34")  # the cell keeps the keyboard
+    page.press("Control+s")
+    page.cell_is(1, 0, "34")
+    expect(page.find(".bar .name small")).to_have_text("saved")
+    page.page.evaluate("window.__studio.files.saving")
+    assert "1 Key\t34\t" in (sample / "Loco-data.txt").read_text(encoding="utf-8")
+    page.misses("dialog[open]")
+
+
+@pytest.mark.long
 def test_a_file_that_changed_meanwhile_is_asked_about(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

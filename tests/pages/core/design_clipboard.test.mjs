@@ -227,6 +227,14 @@ test("rows that begin with the name of a key are pasted into this key", () => {
   );
 });
 
+test("no number of a row without a name is left out", () => {
+  const line = (name, angle) => [name, ...Array(18).fill(String(angle))];
+  const block = [line("1 Key", 11), line("", 22), line("3 Key", 33)];
+  assert.ok("bad" in paste(sample, area(0, 0), block));
+  const legend = ["", "Root", ...Array(17).fill("")];
+  assert.ok("table" in paste(sample, area(0, 0), [line("1 Key", 11), legend]));
+});
+
 test("if a key comes twice, its name is pasted as a bad cell", () => {
   const angles = Array(18).fill("1");
   const pasted = paste(sample, area(1, 0), [

@@ -193,6 +193,14 @@ function keyRows(): readonly KeyRow[] {
   ];
 }
 
+/** Take the number that is being typed, as when its field is left; the focus stays there. */
+function settle(): void {
+  const field = document.activeElement;
+  if (!(field instanceof HTMLInputElement)) return;
+  field.blur();
+  field.focus({ preventScroll: true });
+}
+
 /** Keys that work wherever the focus is. */
 function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
   useEffect(() => {
@@ -204,6 +212,9 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
       const isField = (event.target as HTMLElement).matches(
         "input:not(.cell-input, [type=range], [type=checkbox], [type=radio], [data-kept])",
       );
+      const takesTyped = key === "enter" || key === "s";
+      if (takesTyped && event.repeat) return event.preventDefault();
+      if (takesTyped) settle();
       if (key === "enter") void trials.tryIt();
       else if (key === "s" && membership.name.peek()) {
         const trouble = learning.phases.peek()?.trouble;
@@ -253,14 +264,15 @@ function useLinks({ friend }: Studio): void {
 }
 
 /** Tell the gateway all before the page goes, and ask before a table is lost. */
-function useLeaving({ files, learning, sharing, gateway, membership }: Studio): void {
+function useLeaving(studio: Studio): void {
+  const { sheet, files, robot, learning, sharing, gateway, membership } = studio;
   useEffect(() => {
     const leave = (event: BeforeUnloadEvent) => {
       if (membership.isForgotten.peek()) return;
       const isKept = membership.name.peek()
         ? gateway.state.peek().open || (sharing.isKept.peek() && learning.isTold.peek())
-        : files.isSaved.peek();
-      if (!isKept) event.preventDefault();
+        : files.isSaved.peek() && robot.isSaved.peek();
+      if (!isKept || sheet.draft.peek() !== null) event.preventDefault();
     };
     // A tablet ends a page that is out of sight without another word.
     const tell = () => learning.tell();
@@ -272,5 +284,5 @@ function useLeaving({ files, learning, sharing, gateway, membership }: Studio): 
       removeEventListener("pagehide", tell);
       document.removeEventListener("visibilitychange", tell);
     };
-  }, [files, learning, sharing, gateway, membership]);
+  }, [sheet, files, robot, learning, sharing, gateway, membership]);
 }

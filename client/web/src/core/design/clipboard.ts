@@ -30,7 +30,7 @@ const MOST_BAD = 1000;
 
 const KEY = /^(\d)\s*key$/i;
 const HEADER = /^num of postures?$/i;
-const LEGEND = /^(id of joint|position)?$/i;
+const LEGEND = /^(id of joint|position)$/i;
 
 /**
  * Read what is on the clipboard.
@@ -99,7 +99,7 @@ function pasteAt(table: Table, top: number, left: number, cells: string[][]): Pa
 /** Paste rows that begin with names of keys; null if one has no name, or a key comes twice. */
 function namedRows(table: Table, cells: string[][]): Pasted | null {
   const named = cells
-    .filter((line) => !LEGEND.test(line[0]!.trim()))
+    .filter((line) => !isLegend(line))
     .map((line) => ({ key: Number(KEY.exec(line[0]!.normalize("NFKC").trim())?.[1]), line }));
   const keys = new Set(named.map(({ key }) => key));
   if (!keys.size || keys.size < named.length || keys.has(Number.NaN)) return null;
@@ -123,6 +123,12 @@ function namedRows(table: Table, cells: string[][]): Pasted | null {
   const rows = lines.map(({ row }) => row);
   const [top, bottom] = [Math.min(...rows), Math.max(...rows)];
   return { table: next, area: { top, left: 0, bottom, right: width - 1 } };
+}
+
+/** Whether a row names the columns, or is empty: it has no angles. */
+function isLegend([name, ...cells]: string[]): boolean {
+  const text = name!.trim();
+  return LEGEND.test(text) || (text === "" && cells.every((cell) => numberOf(cell) === null));
 }
 
 const joints = (table: Table) => joint(0, LEVELS.length, table.legs.length);

@@ -76,6 +76,8 @@ export class Files {
   /** Whether somebody chose to begin with a new table or the sample: no file takes its place. */
   isAskedFor = false;
   readonly shapes: Shapes;
+  /** Resolves when nothing is being saved. */
+  private saving: Promise<void> = Promise.resolve();
 
   constructor(
     private readonly gateway: Gateway,
@@ -301,7 +303,22 @@ export class Files {
   }
 
   /** Save the robot's file, or, without a folder, hand it to the person. */
-  async keepRobot(force = false): Promise<void> {
+  keepRobot(force = false): Promise<void> {
+    return this.inTurn(() => this.writeRobot(force));
+  }
+
+  /** Save the table under a name of the folder. */
+  save(name: string, force = false): Promise<void> {
+    return this.inTurn(() => this.write(name, force));
+  }
+
+  /** Save after what is being saved now: each save must know the version that the one before made. */
+  private inTurn(save: () => Promise<void>): Promise<void> {
+    this.saving = this.saving.then(save, save);
+    return this.saving;
+  }
+
+  private async writeRobot(force: boolean): Promise<void> {
     await this.robot.settled;
     const used = this.robot.used.peek();
     if (used?.text == null) return;
@@ -324,8 +341,7 @@ export class Files {
     }
   }
 
-  /** Save the table under a name of the folder. */
-  async save(name: string, force = false): Promise<void> {
+  private async write(name: string, force: boolean): Promise<void> {
     const table = this.sent();
     if (!table) return;
     const saved = this.sheet.digest.peek();

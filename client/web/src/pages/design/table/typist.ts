@@ -68,6 +68,12 @@ export class Typist {
 
   private whileTyping(event: KeyboardEvent): (() => void) | null {
     const wide = event.ctrlKey || event.metaKey;
+    const letter = event.key.toLowerCase();
+    if (wide && (letter === "z" || letter === "y")) {
+      // What is typed is no step yet: no older step must be taken back, or done again.
+      const takesBack = letter === "z" && !event.shiftKey;
+      return () => takesBack && this.cancel();
+    }
     const then = (rows: number, cols: number) => () => {
       this.commit();
       this.move(rows, cols, false);
@@ -77,9 +83,7 @@ export class Typist {
         return () => this.cancel();
       case "Enter":
         // It stays where it is: the picture must show the posture that was changed.
-        if (!wide) return then(0, 0);
-        this.commit(); // and the page lets the robot walk
-        return null;
+        return wide ? null : then(0, 0);
       case "Tab":
         this.commit();
         return null;

@@ -75,6 +75,7 @@ export class Trials {
   /** Let the robot walk with the table as it is now. */
   async tryIt(): Promise<void> {
     const { gateway, sheet } = this;
+    await this.robot.settled;
     const [table, robot] = [sheet.table.peek(), this.robot.robot.peek()];
     if (!table || !robot) return;
     if (this.trying.peek()) {
