@@ -9,7 +9,7 @@ import sys
 import urllib.request
 import zipfile
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ import psutil
 import pytest
 from class_room import ClassRoom, StudentPage, TeacherPage, until_kept
 from lacoc_process import run_lacoc
+from openpyxl import Workbook
 from page_connection import Refused
 from typer.testing import CliRunner
 from waiting import LIMIT_S
@@ -132,6 +133,30 @@ def test_whoever_guesses_codes_disturbs_nobody(room: ClassRoom, closing: ExitSta
     assert comes(closing, room, "Bob").sample()["legs"] == 6
     student.until(lambda: student.last(MessageKind.STUDIO).get("present"))
     assert student.ask("trial", table=student.sample())["ticks"] > 100
+
+
+@pytest.mark.long
+def test_whoever_has_many_workbooks_read_holds_nobody_up(
+    room: ClassRoom, closing: ExitStack
+) -> None:
+    """While the files of one student wait, another student is answered at once."""
+    book, data = Workbook(), io.BytesIO()
+    for _ in range(600):
+        book.active.append(["=1+1"] * 25)
+    book.save(data)
+    greta, otto = comes(closing, room, "Greta"), comes(closing, room, "Otto")
+    pages = [greta, comes(closing, room, "Greta", greta.hello["token"])]
+    first, *_ = [
+        page.send("parse", name="a.xlsx", data=data.getvalue()) for page in pages for _ in range(8)
+    ]
+    with pytest.raises(Refused):  # all of them are at the gateway now
+        greta.reply(first)
+    assert otto.sample()
+    for page in pages:
+        with suppress(TimeoutError):
+            while True:
+                page._receive(page.socket.recv(0))
+    assert sum(len(page._replies) for page in pages) < 8
 
 
 def test_the_teacher_sees_what_students_do(

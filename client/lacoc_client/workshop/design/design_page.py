@@ -1,6 +1,7 @@
 """The connection of one /design page: reads the page's requests and sends the answers."""
 
 import asyncio
+from functools import partial
 from pathlib import PurePath
 from typing import Any
 
@@ -9,6 +10,7 @@ from starlette.websockets import WebSocket
 
 from lacoc_client.web.gateway.answers import Answers
 from lacoc_client.web.gateway.page_requests import GARBAGE, serve_requests
+from lacoc_client.web.gateway.threads import Threads
 from lacoc_client.web.gateway.viewer import Viewer
 from lacoc_client.web.gateway.wire import Ping
 from lacoc_client.workshop.design import requests
@@ -30,6 +32,8 @@ from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import say
 
 _ASKS_HZ, _ASKS_BURST = 50.0, 100
+_FILE_THREADS = Threads(2)
+"""They read and write the files of all students."""
 
 
 class DesignPage:
@@ -149,7 +153,7 @@ class DesignPage:
             ):
                 answers.later(asked.id, self._learn(asked, learner))
             case _:
-                answers.later(asked.id, asyncio.to_thread(self._with_files, asked))
+                answers.later(asked.id, self._with_files(asked, learner))
 
     async def _trial(self, asked: requests.TrialAsk, learner: Learner) -> msgspec.Raw:
         """Let the robot walk, and keep as evidence what the trial shows.
@@ -268,7 +272,16 @@ class DesignPage:
         self._host.learned(student)
         return value
 
-    def _with_files(self, asked: requests.Asked) -> Any:
+    async def _with_files(self, asked: requests.Asked, learner: Learner) -> Any:
+        """Answer a request about gait and robot files.
+
+        A student's files are read one after another, and all files on a few threads: a workbook
+        may take long, and nobody else should wait for it.
+        """
+        async with learner.student.reading:
+            return await _FILE_THREADS.run(partial(self._answer_with_files, asked))
+
+    def _answer_with_files(self, asked: requests.Asked) -> Any:
         """Answer a page's request about gait and robot files; runs on another thread."""
         match asked:
             case requests.ReadAsk():

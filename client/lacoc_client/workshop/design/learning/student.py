@@ -1,5 +1,6 @@
 """A student at work: the student's evidence, tables and open pages."""
 
+import asyncio
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -37,6 +38,8 @@ class Student:
         """The student's own table; in a group the student works on another one."""
         self.table = self.own
         """The table on which the student works."""
+        self.reading = asyncio.Lock()
+        """Held while a file of the student is read or written."""
 
     @property
     def rules(self) -> StudentRules:
