@@ -1,7 +1,9 @@
 """A contestant's robot and gait files, read from their folders (rules 2)."""
 
 import math
+import re
 from collections.abc import Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +22,8 @@ _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
 
 USUAL_NAMES = ("robot.toml", *GAIT_NAMES)
 """Usual names of the files of a join in a folder."""
+
+_LIKE_GAIT = re.compile(r"loco.*\.(txt|xlsx)", re.IGNORECASE)
 
 _ZIP = b"PK\x03\x04"  # first bytes of a workbook
 
@@ -168,9 +172,24 @@ def _newest_in(folder: Path) -> Iterator[Path | None]:
 
     None for a level without a file.
     """
+    there = _gaits_there(folder)
     for patterns in (_POSTURES, _LOCOMOTION):
-        paths = [path for pattern in patterns for path in sorted(folder.glob(pattern))]
+        paths = [path for pattern in patterns for path in there if _is_named(path, pattern)]
         yield max(filter(Path.exists, paths), key=_changed_s, default=None)
+
+
+def _gaits_there(folder: Path) -> list[Path]:
+    """Return the files of a folder whose names look like those of gait files."""
+    return sorted(path for path in folder.glob("*") if _LIKE_GAIT.fullmatch(path.name))
+
+
+def _is_usual(path: Path) -> bool:
+    return any(_is_named(path, pattern) for pattern in (*_POSTURES, *_LOCOMOTION))
+
+
+def _is_named(path: Path, pattern: str) -> bool:
+    """Return whether a file has a name of this pattern; capital letters do not matter."""
+    return fnmatchcase(path.name.lower(), pattern.lower())
 
 
 def _changed_s(path: Path) -> float:
@@ -184,16 +203,20 @@ def _changed_s(path: Path) -> float:
 def remarks(folder: Path, taken: Sequence[Path]) -> list[Phrase]:
     """Return warnings about gait files in a folder that are not read, or are perhaps too old.
 
-    There is a warning for each LocoTra workbook, because it is not read, and for a locomotion file
-    that is older than the posture file.
+    There is a warning for each LocoTra workbook, because it is not read, for a locomotion file that
+    is older than the posture file, and for the newest file if its name is not a usual one.
 
     Args:
         folder: the folder.
         taken: the gait files that are read, as `gaits_in` returns them.
     """
-    said = [
-        say("play.no-workbook", file=path.name) for path in sorted(folder.glob("LocoTra*.xlsx"))
-    ]
+    there = _gaits_there(folder)
+    books = [path for path in there if _is_named(path, "LocoTra*.xlsx")]
+    said = [say("play.no-workbook", file=path.name) for path in books]
+    others = [path for path in there if path not in books and not _is_usual(path)]
+    newest = max(others, key=_changed_s, default=None)
+    if newest is not None and _changed_s(newest) > max(map(_changed_s, taken), default=-math.inf):
+        said.append(say("play.other-name", file=text_of(newest.name)))
     match taken:
         case [postures, sequences] if sequences.stat().st_mtime < postures.stat().st_mtime:
             said.append(

@@ -66,6 +66,7 @@ def test_a_link_that_leads_nowhere_is_no_gait(tmp_path: Path) -> None:
         (["Loco-data.txt", "Loco-data.xlsx"], ["Loco-data.xlsx"]),
         (["LocoTra-data.txt", "LocoTra-data2.txt"], ["LocoTra-data2.txt"]),
         (["LocoTra-data2.txt", "LocoTra-data.txt", "notes.txt"], ["LocoTra-data.txt"]),
+        (["loco-data.XLSX", "LOCOTRA-data2.txt"], ["loco-data.XLSX", "LOCOTRA-data2.txt"]),
     ],
 )
 def test_a_folder_s_gaits_are_the_ones_saved_last(
@@ -96,6 +97,17 @@ def test_sequences_that_are_older_than_their_postures_are_told(tmp_path: Path) -
     (remark,) = map(render, remarks(tmp_path, [table, sequences]))
     assert remark.endswith("lacoc gait convert Loco-data.xlsx LocoTra-data.txt")
     assert remarks(tmp_path, [table]) == remarks(tmp_path, [sequences]) == []
+
+
+def test_a_newer_file_with_another_name_is_told(tmp_path: Path) -> None:
+    """Whoever saves a table under another name is told that the older file is used."""
+    write(tmp_path / "Loco-forward.txt", b"", 1000)
+    (remark,) = map(render, remarks(tmp_path, gaits_in(tmp_path)))
+    assert "Loco-forward.txt is the newest gait file here" in remark
+    write(tmp_path / "Loco-data.txt", b"", 1000)
+    assert remarks(tmp_path, gaits_in(tmp_path)) == []
+    write(tmp_path / "Loco-forward.txt", b"", 1001)
+    assert len(remarks(tmp_path, gaits_in(tmp_path))) == 1
 
 
 def test_a_workbook_of_sequences_is_named(tmp_path: Path) -> None:
