@@ -215,10 +215,14 @@ def test_formulas_in_the_table_become_their_numbers() -> None:
 
 @pytest.mark.parametrize(
     ("place", "formula", "value"),
-    [("V2", '=IF(B2&gt;90,"!"," ")', " "), ("A2", '="0 Key"', "0 Key")],
+    [
+        ("V2", '=IF(B2&gt;90,"!"," ")', " "),
+        ("A2", '="0 Key"', "0 Key"),
+        ("B1", "=COUNTA(A2:A10)", "9"),
+    ],
 )
-def test_a_formula_that_is_no_angle_is_not_counted(place: str, formula: str, value: str) -> None:
-    """A formula beside the table, or for the name of a key, never becomes a number."""
+def test_a_formula_that_is_no_angle_stays(place: str, formula: str, value: str) -> None:
+    """A formula beside the table, or for the count or a name of a key, never becomes a number."""
     book = openpyxl.load_workbook(CALC)
     book[INPUT_SHEET][place] = formula
     cell = re.compile(rf'<c r="{place}"([^>]*)>(<f>.*?</f>)<v ?/?>(</v>)?')
@@ -226,6 +230,9 @@ def test_a_formula_that_is_no_angle_is_not_counted(place: str, formula: str, val
     data = _replaced(saved(book), lambda text: cell.sub(shown, text))
     assert read_workbook(data, "x.xlsx") == sample()
     assert formulas_in(data, "x.xlsx", 18) == 0
+    after = edit_workbook(data, "x.xlsx", with_angle(sample(), 0, 0, 33))
+    assert read_workbook(after, "x.xlsx") == with_angle(sample(), 0, 0, 33)
+    assert everything(after)[f"{INPUT_SHEET}!{place}"] == everything(data)[f"{INPUT_SHEET}!{place}"]
 
 
 def test_pictures_and_charts_stay_byte_for_byte() -> None:

@@ -212,8 +212,10 @@ class _Edit:
     def _forget_values(self, edits: dict[str, dict[Place, Content]]) -> bool:
         """Remove stored results of formulas that may depend on the table.
 
-        The mirror sheet, which shows the table's cells by formulas, gets the new numbers as stored
-        results, because programs that can't calculate read them.
+        In the table's rows they stay: they are names, the number of postures, or empty texts beside
+        the table, and without them the file can't be read. The mirror sheet, which shows the
+        table's cells by formulas, gets the new numbers as stored results, because programs that
+        can't calculate read them.
 
         Returns:
             Whether there are formulas that may depend on the table.
@@ -225,7 +227,8 @@ class _Edit:
             cells = edits.setdefault(name, {})
             mirror = name == MIRROR_SHEET and self._title == INPUT_SHEET
             for cell in sheet.cells():
-                if cell.formula is None or cell.place in cells:
+                is_read = name == self._title and cell.place[0] in self._layout.rows
+                if cell.formula is None or cell.place in cells or is_read:
                     continue
                 if mirror and self._mirrors(cell):
                     if cell.place in self._new_texts:

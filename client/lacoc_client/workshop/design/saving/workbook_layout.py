@@ -28,6 +28,8 @@ class Layout:
     """Number of rows by which the legend moves down."""
     wanted: Mapping[Place, str | float | None]
     """New content of each cell of the table: a text, a number, or None for an empty cell."""
+    rows: frozenset[int]
+    """Rows of the number of postures, and of the postures as they are now."""
 
 
 def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
@@ -84,6 +86,7 @@ def find_layout(rows: Sequence[Row], name: str, table: PostureTable) -> Layout:
         legend=(first, stop),
         down=down,
         wanted=wanted,
+        rows=frozenset([header.number, *(row.number for row in row_of.values())]),
     )
 
 
