@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from lacoc_arenas.arena import Arena
 from lacoc_arenas.game import Place
+from lacoc_server.journal.journal import SNAPSHOT_TICKS
 from lacoc_server.journal.section import FRAME_FIELDS, Build, Difference, Section, Step, Worlds
 from lacoc_server.match.entry import Entry
 from lacoc_server.match.match import Beat, Match
@@ -185,6 +186,9 @@ class Judge:
             self._events.setdefault(event.beat, []).append(event)
         self._result: Result | None = None
         self._scene = b""
+        self._begins = {header.first_beat for header in record.headers}
+        self._unsaved_ticks = SNAPSHOT_TICKS
+        """Ticks since the newest snapshot; so many at first that one may follow at once."""
         self._builds = 0
         self._beat = -1
         with fits_together(record):
@@ -243,13 +247,32 @@ class Judge:
                 self.section = None
             elif (step := physics.take()) is not None and self.section is not None:
                 self.section.steps.append(step)
-            # A court saves physics only after a tick. Elsewhere a snapshot would begin a section
-            # with a state that no step leads to.
-            if number in self._snapshots and (step is None or step.angles is None):
+            ticked = step is not None and step.angles is not None
+            if not self._may_save(number, ticked):
                 differs.append("snapshot")
         self.beats = number + 1
         self.frames += number in self._frames
         return differs
+
+    def _may_save(self, number: int, ticked: bool) -> bool:
+        """Return whether a court can have saved physics in a beat, if the record says that it did.
+
+        It saves physics after a tick; elsewhere a section would begin with a state that no step
+        leads to. It does not save it often: with another arithmetic each section may deviate a
+        little, and many little deviations would be a way.
+
+        Args:
+            number: the beat.
+            ticked: whether a tick passes in it.
+        """
+        if number in self._begins:  # the court was opened again, and counts from there
+            self._unsaved_ticks = SNAPSHOT_TICKS
+        self._unsaved_ticks += ticked
+        if number not in self._snapshots:
+            return True
+        may_save = ticked and self._unsaved_ticks >= SNAPSHOT_TICKS
+        self._unsaved_ticks = 0
+        return may_save
 
     def _make(self, arena: Arena, entries: Sequence[Entry]) -> Physics:
         """Begin the section that starts with newly built robots, without a snapshot.
