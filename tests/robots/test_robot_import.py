@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from lacoc_robots.commands import app as robot_app
 from lacoc_robots.header.c_values import read_c
-from lacoc_robots.header.importing import CFile, import_robot
+from lacoc_robots.header.importing import CFile, Imported, import_robot
 from lacoc_robots.library import find_robot
 from lacoc_robots.robot_file import read_robot
 from lacoc_shared.words import Phrase
@@ -147,19 +147,33 @@ def test_what_is_not_read_is_told(old: str, new: str, note: str, name: str) -> N
     assert found["body"] == {"size_m": [0.1, 0.12, 0.05], "mass_kg": 0.125}
 
 
-def test_places_of_legs_are_in_shares_of_the_body() -> None:
-    """Rjoint_x, _y and _z say where the legs are; a wider body carries them along."""
-    x = ", ".join(["0.5*ROBOT_BODY_W + Start_Pos[0]"] * 3 + ["-0.5*ROBOT_BODY_W"] * 3)
+def with_legs(right: str, left: str) -> Imported:
+    """Import the files with Rjoint_x, _y and _z; `right` and `left` are x of the legs."""
+    x = ", ".join([right] * 3 + [left] * 3)
     y = "0.05, 0, -0.05, -0.05, 0, 0.05"
     z = ", ".join(["ROBOT_LEG_R + Start_Pos[2]"] * 6)
     places = f"dReal Rjoint_x[18]={{{x}}}, Rjoint_y[18]={{{y}}}, Rjoint_z[18]={{{z}}};"
-    made = import_robot([CFile("robot6legs.h", HEADER + places), CFile("m.cpp", MAIN)], "Wide")
+    return import_robot([CFile("robot6legs.h", HEADER + places), CFile("m.cpp", MAIN)], "Wide")
+
+
+def test_places_of_legs_are_in_shares_of_the_body() -> None:
+    """Rjoint_x, _y and _z say where the legs are; a wider body carries them along."""
+    made = with_legs("0.5*ROBOT_BODY_W + Start_Pos[0]", "-0.5*ROBOT_BODY_W")
     assert made.notes == ()
     robot = read_robot(made.toml, "robot.toml")
     assert robot.legs[0].position_m == pytest.approx((0.05, 0.05, -0.01))
     wide = read_robot(made.toml.replace("size_m = [0.1,", "size_m = [0.14,"), "robot.toml")
     assert wide.legs[0].position_m == pytest.approx((0.07, 0.05, -0.01))
     assert wide.legs[3].position_m.x == pytest.approx(-0.07)
+
+
+def test_legs_may_stand_beside_the_body() -> None:
+    """A leg outside the body's box has no shares of it: its place is in metres."""
+    made = with_legs("0.5*ROBOT_BODY_W + ROBOT_LEG_R", "-0.5*ROBOT_BODY_W")
+    legs = tomllib.loads(made.toml)["leg"]
+    assert [one.get("position_m") for one in legs[2:4]] == [[0.065, -0.05, -0.01], None]
+    robot = read_robot(made.toml, "robot.toml")
+    assert robot.legs[3].position_m == pytest.approx((-0.05, -0.05, -0.01))
 
 
 @given(st.text("#define dReal{}[]()=,;.0129+-*/ \n\"'abW_", max_size=200) | st.text(max_size=80))

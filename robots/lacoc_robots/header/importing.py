@@ -130,11 +130,13 @@ class _HeaderRobot:
         yield f"range_deg = {_RANGE_DEG}"
         for leg, (x, y, z) in enumerate(self._hinges()):
             label = _label(leg, self._legs)
-            place = (2 * x / self._w, 2 * y / self._d, 2 * z / self._h)
+            shares = (2 * x / self._w, 2 * y / self._d, 2 * z / self._h)
+            is_on_body = all(abs(round(share, 6)) <= 1 for share in shares)  # as it is written
+            entry, place = ("on_body", shares) if is_on_body else ("position_m", (x, y, z))
             yield ""
             yield "[[leg]]"
             yield f'label = "{label}"'
-            yield f"on_body = [{', '.join(map(_shown, place))}]"
+            yield f"{entry} = [{', '.join(map(_shown, place))}]"
             yield f"outward_deg = {0 if x > 0 else 180}"
             if links_kg[leg] != links_kg[0]:
                 yield f"masses_kg = [{', '.join(map(_shown, links_kg[leg]))}]"
