@@ -110,6 +110,38 @@ def test_each_way_to_write_a_number_is_read(
 
 
 @pytest.mark.parametrize(
+    "lines",
+    [
+        "#if 0\n#define ROBOT_BODY_W 0.2\n#endif",
+        "#if 1\n#else\n#define ROBOT_BODY_W 0.2\n#endif",
+        "#if 1\n#elif BIG\n#define ROBOT_BODY_W 0.2\n#endif",
+        " # if (0) // old\n#ifdef BIG\n#define ROBOT_BODY_W 0.2\n#endif\n#else\n#endif",
+        "#if 0\n#if 1\n#define ROBOT_BODY_W 0.2\n#endif\ndouble ROBOT_BODY_W = 0.2;\n#endif",
+        "#ifdef BIG\n#elif 0\n#define ROBOT_BODY_W 0.2\n#endif",
+        "#if BIG\n#define ROBOT_BODY_W 0.10\n#endif",
+        "#else\n#endif\n#endif",
+    ],
+)
+def test_what_a_compiler_leaves_out_is_not_read(lines: str) -> None:
+    """Lines that `#if 0` leaves out do not count, and what stands there twice is not told."""
+    assert imported(HEADER + lines) == imported()
+
+
+@pytest.mark.parametrize(
+    ("define", "value"), [("ROBOT_BODY_W 0.2", 0.2), ("ROBOT_BODY_W wide()", 0.1)]
+)
+def test_a_second_value_is_told(define: str, value: float) -> None:
+    """It is not known whether `#ifdef BIG` holds: a note says which of two values counts."""
+    first = HEADER.splitlines().index("#define ROBOT_BODY_W 0.1      // width of robot body") + 1
+    last = len(HEADER.splitlines()) + 2
+    found, notes = imported(f"{HEADER}#ifdef BIG\n#define {define}\n#endif\n")
+    assert found["body"]["size_m"][0] == value
+    (note,) = [one for one in notes if one.code == "header.again"]
+    lines = {"line": last, "other": first} if value == 0.2 else {"line": first, "other": last}
+    assert note.values == {"file": "robot6legs.h", "name": "ROBOT_BODY_W", **lines}
+
+
+@pytest.mark.parametrize(
     ("old", "new", "note", "name"),
     [
         ("_W 0.1 ", "_W wide", "header.not-read", "ROBOT_BODY_W"),
@@ -129,6 +161,7 @@ def test_each_way_to_write_a_number_is_read(
         ("AngMin=1.2", "AngMin=speed()", "header.not-read", "AngMin"),
         ("AngMin=1.2", "AngMin", "header.missing", "AngMin"),
         ("dReal Robot_weight", "dReal Robot_mass", "header.missing", "Robot_weight"),
+        ("dReal Start_Pos[3]", "dReal Place[3]", "header.missing", "Start_Pos"),
         ("0.125,", "0.125, 0.1,", "header.entries", "Robot_weight"),
         ("_NUM 18", "_NUM 99999999999", "header.joints", "RJOINT_NUM"),
         ("_NUM 18", "_NUM 0", "header.joints", "RJOINT_NUM"),

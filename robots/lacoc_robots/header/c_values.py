@@ -1,7 +1,8 @@
 """Reads the values that a C file gives to names: `#define W 0.1`, `double a = 2*W, b[2] = {1, W};`.
 
 Only declarations outside of functions are read. An expression may have numbers, names, brackets, +
-- * / and the functions of `_CALLS`. Nothing is compiled or run.
+- * / and the functions of `_CALLS`. Nothing is compiled or run. Lines that `#if 0` leaves out are
+not read; of another `#if` all branches are, because it is not known which condition holds.
 """
 
 import math
@@ -21,6 +22,8 @@ _TOKEN = re.compile(
     r"|(?P<name>[A-Za-z_]\w*)|(?P<sign>\.\.\.|[^\sA-Za-z_0-9])"
 )
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(?!\()[ \t]+(.+)")
+_CONDITION = re.compile(r"[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b(.*)")
+_KNOWN_CONDITIONS = {"0": False, "1": True}
 _TYPES = {"dReal", "double", "float", "int", "long", "unsigned", "short", "dVector3"}
 _BEFORE_TYPES = {"const", "static", "extern", "volatile"}
 _CALLS: Mapping[str, Callable[[float], float]] = {
@@ -49,6 +52,8 @@ class CValues(NamedTuple):
     values: dict[str, Value]
     lines: dict[str, int]
     """Number of the line, from 1, from which the value of each name comes."""
+    others: dict[str, int]
+    """For each name with several values: number of a line whose value does not count."""
     unread: list[Unread]
 
 
@@ -56,6 +61,14 @@ class _Token(NamedTuple):
     kind: str
     text: str
     line: int
+
+
+class _Branch(NamedTuple):
+    """A branch of an `#if`: the lines up to the next `#elif`, `#else` or `#endif`."""
+
+    is_read: bool
+    is_decided: bool
+    """Whether this branch or one before it surely holds, so that a compiler reads no later one."""
 
 
 class _CanNotRead(Exception):
@@ -68,15 +81,16 @@ class _CanNotRead(Exception):
 
 def read_c(text: str) -> CValues:
     """Read the values that a C file defines and declares outside of functions."""
-    macros: dict[str, list[_Token]] = {}
+    defines: list[tuple[str, list[_Token]]] = []
     code: list[str] = []
-    for number, line in enumerate(_lines(_COMMENT.sub(_blank, text)), 1):
+    for number, line in enumerate(_read_lines(_lines(_COMMENT.sub(_blank, text))), 1):
         defined = _DEFINE.match(line)
         if defined:
-            macros[defined[1]] = _tokens(defined[2], number)
+            defines.append((defined[1], _tokens(defined[2], number)))
         code.append("" if line.lstrip().startswith("#") else line)
-    found = CValues({}, {}, [])
-    for name, tokens in macros.items():
+    found = CValues({}, {}, {}, [])
+    macros = dict(defines)
+    for name, tokens in defines:
         _take(found, name, tokens, macros)
     _Declarations(_tokens("\n".join(code), 1), found, macros).read()
     return found
@@ -95,6 +109,22 @@ def _lines(text: str) -> Iterator[str]:
             yield from [""] * (len(open_lines) - 1)
             open_lines = []
     yield " ".join(open_lines)
+
+
+def _read_lines(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the lines of a C file; those that a compiler surely leaves out are empty."""
+    branches = [_Branch(True, False)]  # the whole file, then from the outermost `#if` inward
+    for line in lines:
+        if found := _CONDITION.match(line):
+            word, condition = found[1], found[2].strip(" \t()")
+            holds = True if word == "else" else _KNOWN_CONDITIONS.get(condition)
+            is_decided = False
+            if not word.startswith("if") and len(branches) > 1:
+                is_decided = branches.pop().is_decided
+            if word != "endif":
+                is_read = branches[-1].is_read and not is_decided and holds is not False
+                branches.append(_Branch(is_read, is_decided or holds is True))
+        yield line if branches[-1].is_read else ""
 
 
 def _blank(match: re.Match[str]) -> str:
@@ -136,11 +166,15 @@ def _take(
     line = tokens[0].line if tokens else 0
     try:
         whole = [*islice(_expanded(tokens, macros, (name,)), _MOST_TOKENS)]
-        found.values[name] = _checked(_Expression(whole, found.values))
-        found.lines[name] = line
+        value = _checked(_Expression(whole, found.values))
     except _CanNotRead as error:
         text = f"{name} = {' '.join(token.text for token in tokens)}"
         found.unread.append(Unread(name, line, text, error.why))
+        return
+    if found.values.get(name, value) != value:
+        found.others[name] = found.lines[name]
+    found.values[name] = value
+    found.lines[name] = line
 
 
 def _checked(expression: "_Expression") -> Value:

@@ -59,17 +59,21 @@ def import_robot(sources: Sequence[CFile], name: str) -> Imported:
     values: dict[str, Value] = {}
     places: dict[str, str] = {}
     unread: dict[str, tuple[str, Unread]] = {}
+    notes = []
     for source in sources:
         read = read_c(source.text)
         values |= read.values
         places |= {key: f"{source.name}, line {line}" for key, line in read.lines.items()}
         wanted = [one for one in read.unread if one.name in (*_NAMES, *_PLACES)]
         unread |= {one.name: (source.name, one) for one in wanted}
+        again = {one.name: one.line for one in read.unread if one.name in read.values}
+        for key, other in (read.others | again).items():
+            line = read.lines[key]
+            notes.append(say("header.again", file=source.name, name=key, other=other, line=line))
     for given in values:
         unread.pop(given, None)
     header = _HeaderRobot(values, places)
     lines = [*header.toml(name)]
-    notes = []
     for file, one in unread.values():
         notes.append(say("header.not-read", file=file, line=one.line, name=one.name, why=one.why))
         lines += ["", f"# Not read: {file}, line {one.line}: {printable(one.text, 160)}"]
@@ -96,6 +100,8 @@ class _HeaderRobot:
         self._legs = self._joints() // JOINTS_PER_LEG
         start = self._list("Start_Pos", 3)
         self._start = start or (0.0, 0.0, self._link + self._radius)
+        if start is None:
+            self._miss(_shown(self._start[2]), "Start_Pos")
 
     def toml(self, name: str) -> Iterator[str]:
         """Return the lines of the robot file that is made."""
