@@ -157,7 +157,9 @@ def test_zero_has_one_sign():
 def test_layouts_that_mean_the_same(text, change):
     """Line ends, blank lines, spaces for tabs and a missing legend do not change what is read."""
     plain = read_gait(text.encode(), "x")
-    assert read_gait(change(text).encode(), "x") == plain
+    notes: list[Phrase] = []
+    assert read_gait(change(text).encode(), "x", notes=notes) == plain
+    assert notes == []
 
 
 @pytest.mark.parametrize("text", [FIGURE_4_1, FIGURE_4_2], ids=["Loco-data", "LocoTra-data"])

@@ -51,10 +51,13 @@ def contradiction(file: str, row: Row, labels: Sequence[str]) -> Phrase | None:
         A remark on the first such label only, because one mix-up of columns causes dozens;
         None if all labels fit.
     """
+    joints = len(labels) * len(LEVEL_NAMES)
+    if all(row.cells) and len(row.cells) <= joints:
+        return None  # between spaces empty cells are lost: the columns of the labels are not known
     known = {_plain(label): label for label in labels}
     levels = {_plain(name): name for name in LEVEL_NAMES}
     ids = row.cells[0].casefold() == _IDS_LABEL
-    for joint, cell in enumerate(row.cells[1 : len(labels) * len(LEVEL_NAMES) + 1]):
+    for joint, cell in enumerate(row.cells[1 : joints + 1]):
         leg, level = leg_and_level(joint, len(labels))
         if ids:
             number = number_of(cell)
