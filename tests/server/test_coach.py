@@ -11,12 +11,13 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sample_walks import entry_of
+from sample_walks import course_of, entry_of
 
 from lacoc_robots.library import find_robot
 from lacoc_robots.reading import load_gait
 from lacoc_robots.robot_file import read_robot
-from lacoc_server.studio.coach.coach import coached_key
+from lacoc_server.studio.answers import try_gait
+from lacoc_server.studio.coach.coach import CoachFound, coached_key
 from lacoc_server.studio.coach.goal import goal_score
 from lacoc_server.studio.coach.improve import Size, improve
 from lacoc_server.studio.coach.matter import STEP_DEG, what_matters
@@ -189,6 +190,32 @@ def test_the_command_finds_other_gaits(capsys: pytest.CaptureFixture[str], tmp_p
         except SystemExit as ended:
             code = int(ended.code or 0)
         assert code != 0
+
+
+def test_the_command_writes_nothing_without_a_search(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """`--out` without a search is refused before anything is tried."""
+    assert cli.main(["coach", str(SAMPLE), "--out", str(tmp_path / "better.txt")]) == 2
+    assert "--out needs --size, --map or --variants" in capsys.readouterr().err
+
+
+def test_the_command_says_what_it_writes(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Where nothing better is found, the file has the own gait, and the command says both."""
+    figures = try_gait(course_of("hexapod"), entry_of("hexapod").gait, seconds=0.1).figures
+    own = sample_task(2).table.angles_deg
+    found = CoachFound([], [], Improved(own, 0.0), figures, figures, 0, stopped=False)
+    monkeypatch.setattr("lacoc_server.commands.coach.Workers", contextlib.nullcontext)
+    monkeypatch.setattr("lacoc_server.commands.coach.coach", lambda *_: found)
+    out = tmp_path / "better.txt"
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(["coach", str(SAMPLE), "--size", "cell", "--out", str(out)])
+    said = capsys.readouterr()
+    assert "No better gait was found" in said.out
+    assert f"{out} written." in said.err
+    assert out.exists()
 
 
 def test_a_table_that_makes_no_key_is_told(tmp_path: Path) -> None:

@@ -136,8 +136,11 @@ def coach_command(
     so that you can understand the changes that are left. With --map or --variants it looks for
     gaits that are different instead. Ctrl-C ends the search and keeps what it has found.
     """
-    if sum((size is not None, map_, variants)) > 1:
+    wishes = sum((size is not None, map_, variants))
+    if wishes > 1:
         raise UserError(say("coach.one-wish"))
+    if out is not None and not wishes:
+        raise UserError(say("coach.out-of-nothing"))
     if goal is not Goal.FORWARD and (map_ or variants):
         raise UserError(say("coach.keep-forward"))
     if keep and (not variants or len(keep) > 2):
@@ -182,8 +185,8 @@ def coach_command(
         harmed = [SHOWN_NAMES[name] for name in worse(found.before, found.after, goal)]
         if harmed:
             screen.show(say("coach.worse", figures=harmed))
-        if out is not None:
-            screen.note(say("coach.written", file=str(out)))
+    if out is not None and best is not None:
+        screen.note(say("command.written", path=str(out)))
 
 
 def _show_others(
