@@ -184,7 +184,8 @@ def convert(
 ) -> None:
     """Convert a gait file to another kind; an older file of that name is kept with a number."""
     locomotion = _is_locomotion(target)
-    table = read_gait_file(source)
+    notes: list[Phrase] = []
+    table = read_gait_file(source, notes=notes)
     if keys is not None and not (locomotion and isinstance(table, PostureTable)):
         raise UserError(say("convert.keys-use"))
     if locomotion and isinstance(table, PostureTable):
@@ -200,6 +201,8 @@ def convert(
     else:
         data = write_gait(table, labels)
     _write(target, data)
+    for note in notes:
+        screen.warn(note)
 
 
 def _write(path: Path, data: bytes) -> None:

@@ -9,7 +9,7 @@ from lacoc_shared.gait.joining import sample_sequences
 from lacoc_shared.gait.tables import Gait, PostureTable
 from lacoc_shared.gait.workbook.file import read_gait_file
 from lacoc_shared.mistakes import FileRefused, Mistake
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 
 def read_robot_file(name: str) -> RobotSpec:
@@ -23,16 +23,21 @@ def read_robot_file(name: str) -> RobotSpec:
     return read_robot(data, file)
 
 
-def load_gait(file: Path, robot: RobotSpec) -> Gait:
+def load_gait(file: Path, robot: RobotSpec, notes: list[Phrase] | None = None) -> Gait:
     """Read a gait file of a robot; postures are joined into the sequences of the sample's keys.
 
     If the file lacks a posture of one of these sequences, the gait has no level B.
+
+    Args:
+        file: the gait file.
+        robot: the robot that the gait must fit.
+        notes: list that remarks are appended to: not mistakes, but perhaps not intended.
 
     Raises:
         UserError: if the file can't be read.
         FileRefused: with every mistake of the file.
     """
-    table = read_gait_file(file, legs=robot.labels, range_deg=robot.ranges_deg)
+    table = read_gait_file(file, legs=robot.labels, range_deg=robot.ranges_deg, notes=notes)
     if isinstance(table, PostureTable):
         gait = Gait(table, sample_sequences(table))
     else:

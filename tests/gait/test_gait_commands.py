@@ -150,17 +150,21 @@ def test_check_shows_right_files_beside_wrong_ones(lacoc, folder):
 
 
 @pytest.mark.parametrize("kind", ["Loco-data.txt", "Loco-data.xlsx"])
-def test_check_notes_labels_that_are_exchanged(lacoc, tmp_path, workshop, kind):
-    """A legend with exchanged leg labels is no mistake, but `check` prints a note about it."""
+def test_labels_that_are_exchanged_are_noted(lacoc, tmp_path, workshop, kind):
+    """A legend with exchanged leg labels is no mistake; `check` and `convert` print a note."""
     exchanged = ("L,F", "R,C", "R,B", "L,B", "L,C", "R,F")
     write = write_workbook if kind.endswith("xlsx") else write_gait
     (tmp_path / kind).write_bytes(write(workshop, exchanged))
     code, out, err = lacoc("gait", "check", tmp_path / kind)
     assert (code, f"{kind}: no mistakes" in out) == (0, True)
-    assert " ".join(err.split()) == (
+    note = (
         f"Note: {kind}, row 12, column 2: the legend says L,F, but joint 0 is a joint of leg R,F. "
-        "Each angle goes to the joint of its column, whatever the legend says."
+        "Each angle goes to the joint of its column, whatever the legend says.\n"
     )
+    assert err == note
+    target = tmp_path / "LocoTra-data.txt"
+    code, out, err = lacoc("gait", "convert", tmp_path / kind, target)
+    assert (code, out, err) == (0, "", f"{target} written.\n{note}")
 
 
 def test_check_for_a_robot(lacoc, folder):

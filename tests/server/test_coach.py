@@ -218,6 +218,16 @@ def test_the_command_says_what_it_writes(
     assert out.exists()
 
 
+def test_the_command_prints_the_readers_notes(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """What is perhaps not intended in the file is told before the search."""
+    file = tmp_path / "Loco-data.txt"
+    file.write_text(SAMPLE.read_text().replace("Position\tR,F", "Position\tL,F"))
+    assert cli.main(["coach", str(file), "--key", "9"]) == 2
+    assert "the legend says L,F, but joint 0 is a joint of leg R,F" in capsys.readouterr().err
+
+
 def test_a_table_that_makes_no_key_is_told(tmp_path: Path) -> None:
     """Without posture 4 there is no key of level B: the message names the rows of key 2."""
     text = SAMPLE.read_text(encoding="utf-8").replace("Posture\t9", "Posture\t4")

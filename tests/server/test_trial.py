@@ -291,3 +291,14 @@ def test_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert "The feet slide over the floor at" not in said.out
     assert "repeated too few times" in said.err
     assert run("--robot", "quadruped") == 2
+
+
+def test_the_command_prints_the_readers_notes(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """What is perhaps not intended in the file is told before the figures."""
+    file = tmp_path / "Loco-data.txt"
+    file.write_text(SAMPLE.read_text().replace("Position\tR,F", "Position\tL,F"))
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(["trial", str(file), "--seconds", "0.1", "--json"])
+    assert "the legend says L,F, but joint 0 is a joint of leg R,F" in capsys.readouterr().err

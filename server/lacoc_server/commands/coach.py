@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from lacoc_robots.library import WORKSHOPS_ROBOT
-from lacoc_robots.reading import load_gait, read_robot_file
+from lacoc_robots.reading import read_robot_file
 from lacoc_server.commands.coach_others import as_json as others_json
 from lacoc_server.commands.coach_others import (
     kept_tables,
@@ -23,7 +23,7 @@ from lacoc_server.commands.coach_others import (
     write_gaits,
     written,
 )
-from lacoc_server.commands.trial import GaitFile, RobotName
+from lacoc_server.commands.trial import GaitFile, RobotName, warned_gait
 from lacoc_server.simulate.workers import Workers
 from lacoc_server.studio.coach.coach import Tell, cell_place, coach, coached_key, reply_of, task_of
 from lacoc_server.studio.coach.goal import goal_value
@@ -146,7 +146,7 @@ def coach_command(
     if keep and (not variants or len(keep) > 2):
         raise UserError(say("coach.keep-variants"))
     spec = read_robot_file(robot)
-    gait = load_gait(file, spec)
+    gait = warned_gait(file, spec)
     digit = coached_key(gait, goal, key)
     sequences = None if gait.postures is None else SAMPLE_KEYS
     task = task_of(spec, gait, digit, goal, sequences)

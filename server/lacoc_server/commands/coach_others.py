@@ -9,8 +9,8 @@ from msgspec.structs import asdict
 from rich.table import Table
 from rich.text import Text
 
-from lacoc_robots.reading import load_gait
 from lacoc_robots.robot import RobotSpec
+from lacoc_server.commands.trial import warned_gait
 from lacoc_server.studio.coach.table import Angles
 from lacoc_server.studio.coach.trials import Task
 from lacoc_shared.command import screen
@@ -118,7 +118,7 @@ def kept_tables(files: Sequence[Path], robot: RobotSpec, task: Task, digit: int)
     order = task.table.order
     found = []
     for file in files:
-        postures = load_gait(file, robot).sequence(Level.LOCOMOTION, digit) or ()
+        postures = warned_gait(file, robot).sequence(Level.LOCOMOTION, digit) or ()
         rows = dict(zip(order, postures, strict=False))
         if len(postures) != len(order) or any(
             rows[row] != posture for row, posture in zip(order, postures, strict=True)

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from lacoc_robots.library import WORKSHOPS_ROBOT
 from lacoc_robots.reading import load_gait, read_robot_file
+from lacoc_robots.robot import RobotSpec
 from lacoc_server.studio.answers import Trial, try_gait
 from lacoc_server.trial.bars import foot_bars
 from lacoc_server.trial.course import SETTLE_TICKS
@@ -17,6 +18,7 @@ from lacoc_server.trial.told import told
 from lacoc_server.trial.walk import Walk
 from lacoc_server.world.sensed import make_course
 from lacoc_shared.command import options, screen
+from lacoc_shared.gait.tables import Gait
 from lacoc_shared.words import Phrase, render, say
 
 app = typer.Typer()
@@ -70,7 +72,7 @@ def trial_command(
     averages of whole cycles, without the first cycle, in which the robot starts to move.
     """
     spec = read_robot_file(robot)
-    gait = load_gait(file, spec)
+    gait = warned_gait(file, spec)
     trial = try_gait(make_course(spec), gait, keys, seconds)
     if json:
         screen.print_json(_as_json(trial))
@@ -84,6 +86,20 @@ def trial_command(
         screen.show(sentence.said)
     for note in trial.notes:
         screen.warn(note)
+
+
+def warned_gait(file: Path, robot: RobotSpec) -> Gait:
+    """Read a gait file of a robot, and print what is perhaps not intended in it.
+
+    Raises:
+        UserError: if the file can't be read.
+        FileRefused: with every mistake of the file.
+    """
+    notes: list[Phrase] = []
+    gait = load_gait(file, robot, notes)
+    for note in notes:
+        screen.warn(note)
+    return gait
 
 
 def _as_json(trial: Trial) -> dict[str, Any]:
