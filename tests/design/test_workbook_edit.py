@@ -147,6 +147,13 @@ def test_the_mirror_shows_the_new_numbers() -> None:
         assert b'fullCalcOnLoad="1"' in archive.read("xl/workbook.xml")
 
 
+def test_the_mirror_shows_a_text_like_a_number() -> None:
+    """A label that a person reads as a number, but Excel does not, is a text in the mirror too."""
+    before = write_workbook(sample(), ("45°", *leg_labels(6)[1:]))
+    table = PostureTable({**sample().postures, 9: sample().postures[1]})
+    assert values(edit_workbook(before, "x.xlsx", table), MIRROR_SHEET)["B13"] == "45°"
+
+
 def test_old_results_of_formulas_are_forgotten() -> None:
     """A formula that reads the table loses its stored result; any other formula keeps it."""
     calculated = _replaced(own(), lambda text: NO_VALUE.sub("<v>7</v>", text))

@@ -81,7 +81,8 @@ def test_nothing_is_clamped(cell):
 
 
 @pytest.mark.parametrize(
-    "cell", ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°", "4²", "½", "0x10", "1_0", "٤٥", "–45"]
+    "cell",
+    ["abc", "4 5", "1.2.3", "1,234.5", "--4", "45°°", "4²", "½", "①5", "0x10", "1_0", "٤٥", "4–5"],
 )
 def test_what_is_no_number(cell):
     """A cell must hold a number, written in an allowed form (rules 2); all else is a mistake."""

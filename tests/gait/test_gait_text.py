@@ -128,6 +128,8 @@ def test_zero_has_one_sign():
         pytest.param(lambda t: t.replace("0", "０").replace("-", "－"), id="full-width"),
         pytest.param(lambda t: t.replace("-", "−"), id="U+2212"),
         pytest.param(lambda t: t.replace("45", "45,0"), id="decimal commas"),
+        pytest.param(lambda t: t.replace("-", "ー").replace("45", "45。0"), id="Japanese signs"),
+        pytest.param(lambda t: t.replace("-", "–").replace("45", "45°"), id="dashes and degrees"),
         pytest.param(
             lambda t: "\n".join(
                 "\t".join(f'"{c}"' if c else "" for c in line.split("\t"))

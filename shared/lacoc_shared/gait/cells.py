@@ -38,7 +38,13 @@ number of columns."""
 # is one of the full-width forms.
 _SPACES = "\u3000\u00a0\u2007\u202f"
 _NARROW = {0xFF01 + i: 0x21 + i for i in range(94)} | {ord(c): " " for c in _SPACES} | {0x2212: "-"}
-_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?", re.ASCII)
+# Characters that count as a minus: dashes and the long vowel mark; and those that count as a
+# decimal point. A Japanese input method types the mark, "。" and "、" for the keys - . and comma.
+_MINUS = "\u2010\u2011\u2012\u2013\u2014\u2015\u30fc\uff70"
+_POINTS = ",\u3001\u3002\uff61\uff64"
+_SIGN, _POINT = f"[+{_MINUS}-]?", f"[.{_POINTS}]"
+_NUMBER = re.compile(rf"{_SIGN}(\d+({_POINT}\d*)?|{_POINT}\d+)([eE]{_SIGN}\d+)?", re.ASCII)
+_PLAIN = str.maketrans(_MINUS + _POINTS, "-" * len(_MINUS) + "." * len(_POINTS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +126,13 @@ def narrow(text: str) -> str:
 
 
 def number_of(cell: str) -> float | None:
-    """Read the number in a cell, with a decimal point or comma; None if it is not a number."""
-    return float(cell.replace(",", ".")) if _NUMBER.fullmatch(cell) else None
+    """Read the number in a cell; None if it is not a number.
+
+    It may have a decimal point or comma, or what counts as one, and a degree sign behind it. Pages
+    take the same signs (client/web/src/core/design/table.ts).
+    """
+    number = cell.removesuffix("°").rstrip()
+    return float(number.translate(_PLAIN)) if _NUMBER.fullmatch(number) else None
 
 
 def shown(cell: str) -> Phrase | str:

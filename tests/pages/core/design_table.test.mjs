@@ -1,7 +1,9 @@
 // Tests of the table of a gait (client/web/src/core/design/table.ts, rows.ts, tools.ts).
 
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import * as rows from "../../../client/web/src/core/design/rows.ts";
 import * as t from "../../../client/web/src/core/design/table.ts";
 import * as tools from "../../../client/web/src/core/design/tools.ts";
@@ -10,38 +12,74 @@ import { COLUMNS, SEQUENCES, sample, walking } from "./design_sample.mjs";
 const names = (table) => table.rows.map(({ key, posture }) => `${key}.${posture}`).join(" ");
 const one = (row, col) => t.areaOf({ row, col });
 
+const TYPED = {
+  45: 45,
+  "-22.5": -22.5,
+  "-22,5": -22.5,
+  " 7 ": 7,
+  "+7": 7,
+  "45°": 45,
+  "-0": 0,
+  "１２．５": 12.5,
+  "－４５": -45,
+  "−45": -45,
+  ー４５: -45,
+  "２２。５": 22.5,
+  "1e1": 10,
+  150: 150,
+  150.1: "range",
+  "-150": -150,
+  "-150.1": "range",
+  "1e999": "range",
+  "": "empty",
+  "  ": "empty",
+  abc: "number",
+  "4 5": "number",
+  "1.000,5": "number",
+  "--5": "number",
+  "45 °": 45,
+  "–45": -45,
+  ｰ４５: -45,
+  "２２､５": 22.5,
+  "1e−1": 0.1,
+  ー: "number",
+  "–": "number",
+  "°": "number",
+  "45°°": "number",
+  "10–45": "number",
+  "4ー5": "number",
+  "－ー45": "number",
+  "①45": "number",
+  "⒈45": "number",
+  "4²": "number",
+  "1½": "number",
+};
+
 test("a typed text becomes an angle, or stays a text with a reason", () => {
-  const typed = {
-    45: 45,
-    "-22.5": -22.5,
-    "-22,5": -22.5,
-    " 7 ": 7,
-    "+7": 7,
-    "45°": 45,
-    "-0": 0,
-    "１２．５": 12.5,
-    "－４５": -45,
-    "−45": -45,
-    ー４５: -45,
-    "２２。５": 22.5,
-    "1e1": 10,
-    150: 150,
-    150.1: "range",
-    "-150": -150,
-    "-150.1": "range",
-    "1e999": "range",
-    "": "empty",
-    "  ": "empty",
-    abc: "number",
-    "4 5": "number",
-    "1.000,5": "number",
-    "--5": "number",
-  };
-  for (const [text, expected] of Object.entries(typed)) {
+  for (const [text, expected] of Object.entries(TYPED)) {
     const cell = t.readCell(text, [-150, 150]);
     assert.deepEqual(t.wrongOf(cell) ?? cell, expected, JSON.stringify(text));
     assert.ok(!Object.is(cell, -0));
   }
+});
+
+test("files take the same numbers as the page", () => {
+  const signs = Array.from({ length: 0x10000 }, (_, code) => String.fromCharCode(code));
+  const shown = signs.filter((sign) => !/[\s\p{C}]/u.test(sign));
+  const texts = [
+    ...Object.keys(TYPED).filter((text) => text !== "1e999"),
+    ...shown.flatMap((sign) => [`${sign}4`, `4${sign}5`, `4${sign}`, `4e${sign}1`]),
+  ];
+  const script = fileURLToPath(new URL("design_numbers.py", import.meta.url));
+  const input = JSON.stringify(texts);
+  const read = execFileSync(process.env.PYTHON ?? "python", [script], {
+    input,
+    maxBuffer: 1 << 24,
+  });
+  const differ = JSON.parse(read).flatMap((number, index) =>
+    number === t.numberOf(texts[index]) ? [] : [texts[index]],
+  );
+  assert.deepEqual(differ, []);
 });
 
 test("a table with a cell without an angle can't be sent", () => {

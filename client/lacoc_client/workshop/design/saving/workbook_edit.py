@@ -284,7 +284,8 @@ def _with_value(sheet: SheetXml, cell: XmlCell, value: str) -> Content:
     p, kind = sheet.prefix, ""
     inner = sheet.raw(cell.formula.start, cell.formula.end)
     if value:
-        kind = "" if number_of(value) is not None else "str"
+        number = number_of(value)
+        kind = "" if number is not None and value == number_text(number) else "str"
         inner += f"<{p}v>{escape(value)}</{p}v>"
     return Content(inner, kind, cell.attributes.get("s", ""))
 

@@ -72,8 +72,10 @@ const EXACT = 1e9;
 const MOST_TEXT = 100;
 
 const NUMBER = /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?$/i;
+/** Full-width forms of ASCII, and half-width forms of "。", "、" and "ー". */
+const FORMS = /[\uFF01-\uFF5E\uFF61\uFF64\uFF70]/g;
 /** Characters that count as a minus: dashes, the minus sign, and the Japanese long vowel mark. */
-const MINUS = /^[\u2010-\u2015\u2212\u30FC]/;
+const MINUS = /(^|e)[\u2010-\u2015\u2212\u30FC]/gi;
 
 /** The joint id of a leg's joint (rules 1). */
 export const joint = (leg: number, level: number, legs: number) => leg + legs * level;
@@ -87,13 +89,13 @@ export const legAndLevel = (id: number, legs: number) => ({
 /**
  * The number in a text; null: the text is no number. It may have a decimal point or a comma, and
  * full-width digits. "ー", "。" and "、" count as minus and decimal points, because a Japanese
- * input method types them for these keys.
+ * input method types them for these keys. Files take the same signs (lacoc_shared/gait/cells.py).
  */
 export function numberOf(text: string): number | null {
   const plain = text
-    .normalize("NFKC")
+    .replace(FORMS, (form) => form.normalize("NFKC")) // of other forms, "①45" would become 145
     .trim()
-    .replace(MINUS, "-")
+    .replace(MINUS, "$1-")
     .replace(/[。、]/, ".");
   const number = plain.replace(/\s*°$/, "");
   return NUMBER.test(number) ? Number(number.replace(",", ".")) + 0 : null;
