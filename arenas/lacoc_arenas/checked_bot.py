@@ -6,18 +6,18 @@ reads the same in a headless match and at a court.
 
 import traceback
 from collections.abc import Callable
+from types import FunctionType, MethodType
 from typing import Any
 
 from lacoc_arenas import time_limit
 from lacoc_arenas.bot import BotFactory, Brain, Key
 from lacoc_arenas.time_limit import Timer, TimeUp
+from lacoc_shared.gait.tables import Level
 from lacoc_shared.messages import Frame, Sheet
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.seat import RESTART_KEY
 from lacoc_shared.words import Phrase, say
 
-_ANY = (Exception, SystemExit, TimeUp)
-"""Whatever a person's code may raise."""
 _OURS = (__file__, time_limit.__file__)
 _LONGEST_ERROR = 200
 _A_BRAIN = say("expected.brain")
@@ -39,18 +39,23 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
         timer = Timer(name)
         try:
             brain = timer.begin(bot, sheet, seat)
-        except _ANY as error:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
             raise _failed(name, bot, error) from error
         if not callable(brain):
             raise _gave_back(name, bot, brain, _A_BRAIN)
 
         def see(frame: Frame) -> Key | None:
             try:
-                key: Key | None = timer.frame(brain, frame)
-            except _ANY as error:
+                found = timer.frame(brain, frame)
+                key = _plain_key(found)
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:
                 raise _failed(name, brain, error) from error
-            if key is not None and not _is_key(key):
-                raise _gave_back(name, brain, key, _A_KEY)
+            if key is None and found is not None:
+                raise _gave_back(name, brain, found, _A_KEY)
             return key
 
         return see
@@ -70,7 +75,9 @@ def loaded(name: str, load: Callable[[], Any]) -> Any:
     """
     try:
         return Timer(name).begin(load)
-    except _ANY as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         raise broken(name, error, name) from error
 
 
@@ -92,7 +99,8 @@ def broken(name: str, error: BaseException, file: str | None) -> UserError:
     if isinstance(error, ModuleNotFoundError) and error.name:
         return UserError(say("bot.no-module", bot=name, place=place, module=error.name))
     reason = error.msg if isinstance(error, SyntaxError) else error
-    what = printable(f"{type(error).__name__}: {reason}", _LONGEST_ERROR)
+    what = f"{type(error).__name__}: {_written(str, reason)}"
+    what = printable(what, _LONGEST_ERROR)
     return UserError(say("bot.ended", bot=name, place=place, error=what))
 
 
@@ -107,22 +115,36 @@ def _failed(name: str, function: Callable[..., Any], error: BaseException) -> Us
     return broken(name, error, called and called.tb_frame.f_code.co_filename)
 
 
-def _is_key(found: object) -> bool:
-    return (
-        isinstance(found, Key)
-        and found.level in (0, 1)
-        and isinstance(found.key, int)
-        and 0 <= found.key <= RESTART_KEY
-    )
+def _plain_key(found: Any) -> Key | None:
+    """Return a key made of plain numbers, which every record and message can hold.
+
+    None: it is no key. True and False are no digits.
+    """
+    if not isinstance(found, Key) or found.level not in (0, 1):
+        return None
+    if not isinstance(found.key, int) or isinstance(found.key, bool):
+        return None
+    key = Key(Level(int(found.level)), int(found.key))
+    return key if 0 <= key.key <= RESTART_KEY else None
 
 
 def _gave_back(name: str, function: object, found: object, expected: Phrase) -> UserError:
-    shown = printable(repr(found), 80)
+    shown = printable(_written(repr, found), 80)
     place = _place(function)
     return UserError(say("bot.returned", bot=name, place=place, found=shown, expected=expected))
 
 
+def _written(write: Callable[[object], str], value: object) -> str:
+    """Return a bot's value as `write` (`repr` or `str`) writes it; its type's name if it can't."""
+    try:
+        return write(value)
+    except Exception:  # the bot's own code writes it
+        return type(value).__name__
+
+
 def _place(function: object) -> str | None:
     """Return the file and line where a function begins; None if it is no Python function."""
-    code = getattr(function, "__code__", None)
-    return None if code is None else f"{code.co_filename}:{code.co_firstlineno}"
+    if not isinstance(function, FunctionType | MethodType):
+        return None
+    code = function.__code__
+    return f"{code.co_filename}:{code.co_firstlineno}"

@@ -41,21 +41,43 @@ def brain(returns: str) -> str:
         ("None", None),
         ("Key(Level.LOCOMOTION, 2)", Key(Level.LOCOMOTION, 2)),
         ("Key(0, 10)", Key(Level.POSTURE, RESTART_KEY)),
+        ("Key(1.0, Level(1))", Key(Level.LOCOMOTION, 1)),
+        ("Key(1, type('Digit', (int,), {})(2))", Key(Level.LOCOMOTION, 2)),
     ],
 )
 def test_what_is_a_key(tmp_path: Path, returns: str, expected: Key | None) -> None:
-    """A brain returns None or a key; the key's level may be a plain 0 or 1."""
-    assert play(tmp_path, brain(returns)) == expected
+    """A brain returns None or a key; its numbers become plain ones, which a record can hold."""
+    key = play(tmp_path, brain(returns))
+    assert key == expected
+    assert key is None or (type(key.level), type(key.key)) == (Level, int)
 
 
 @pytest.mark.parametrize(
     "returns",
-    ["2", "(1, 2)", "Key(1, 42)", "Key(1, -1)", "Key(2, 1)", "Key('B', 2)", "Key(1, 2.0)"],
+    [
+        "2",
+        "(1, 2)",
+        "Key(1, 42)",
+        "Key(1, -1)",
+        "Key(2, 1)",
+        "Key('B', 2)",
+        "Key(1, 2.0)",
+        "Key(1, True)",
+        "type('Hm', (), {'__repr__': lambda self: self.nothing})()",
+    ],
 )
 def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
     """If a brain returns anything but a valid key or None, the error says what was expected."""
     with pytest.raises(UserError, match=r"my_bot\.py:5\) returned .*Expected a Key\(level"):
         play(tmp_path, brain(returns))
+
+
+def test_a_brain_that_is_no_function(tmp_path: Path) -> None:
+    """A brain may be an object of any class; if it has no line, the message names none."""
+    text = "class Brain:\n    __call__ = lambda self, frame: 2\n"
+    text += "    __getattr__ = lambda self, name: self.nothing\n"
+    with pytest.raises(UserError, match=r"my_bot\.py returned 2\. Expected a Key\(level"):
+        play(tmp_path, f"{text}def bot(sheet, seat):\n    return Brain()\n")
 
 
 @pytest.mark.parametrize(
@@ -73,6 +95,12 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
         ("def bot(sheet, seat):\n    return sheet.team\n", r"py:5\): AttributeError: .*'team'"),
         (brain("frame.seats[7]"), r"py:6\): IndexError: "),
         (brain("Level(frame.seats)"), r"py:6\): ValueError: "),
+        (brain("exec('raise GeneratorExit')"), r"py:6\): GeneratorExit: "),
+        ("import asyncio; raise asyncio.CancelledError\n", r"py:4\): CancelledError: "),
+        (
+            "class Hm(Exception):\n    def __str__(self): return self.nothing\nraise Hm\n",
+            r"py:6\): Hm: Hm\.",
+        ),
         ("import no_such_package\n", r"needs the module no_such_package \(.*py:4\), which"),
         ("def bot(sheet, seat)\n", r"py:4\): SyntaxError: expected ':'"),
     ],
