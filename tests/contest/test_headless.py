@@ -15,6 +15,7 @@ from lacoc_process import Lacoc
 from small_contest import BOTS, CONTEST, FINAL, SWISS, Here
 from waiting import LIMIT_S, until
 
+from lacoc_arenas import arena as arenas
 from lacoc_arenas import time_limit
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.headless.play import play_contest
@@ -25,6 +26,7 @@ from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
 from lacoc_server.contest.verify.published import check_published, read
+from lacoc_server.simulate.headless import seated
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
@@ -99,6 +101,18 @@ class _Damaged(Here):
         future: Future[PlayedAlone | Phrase] = Future()
         future.set_result(found._replace(record=b"damaged"))
         return future
+
+
+def test_an_unexpected_error_ends_one_game(capsys: pytest.CaptureFixture[str]) -> None:
+    """An unexpected error in a game comes back as a message, and its traceback is printed."""
+    one = seated(arenas.load("othello"), 0, "straight")
+    one = msgspec.structs.replace(one, program=b"raise KeyboardInterrupt")
+    found = attempt_match(
+        Job(match_id="game", arena="othello", overrides={}, players=(one,), late_ticks=0)
+    )
+    assert isinstance(found, Phrase)
+    assert "match of straight ended with an unexpected error: Keyboard" in render(found)
+    assert "line 1, in <module>\nKeyboardInterrupt" in capsys.readouterr().err
 
 
 def test_a_record_without_a_result_is_told(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
@@ -135,7 +136,8 @@ def ended(job: Job, future: "Future[PlayedAlone | Phrase]") -> PlayedAlone:
     Raises:
         EngineLost: if no game can be played any more.
         BotFailed: if a bot failed.
-        UserError: if its files have a mistake, its record can't be written, or its process died.
+        UserError: if its files have a mistake, its record can't be written, its process died, or
+            another error came up.
     """
     try:
         found = future.result()
@@ -205,7 +207,8 @@ def first_done(
 def attempt_match(job: Job) -> PlayedAlone | Phrase:
     """Play a match in a worker process.
 
-    Return the message of a `UserError` instead of raising it.
+    Return the message of a `UserError` instead of raising it. Any other error is unexpected: print
+    its traceback, and return a message too, so that it ends no other match.
     """
     try:
         if not job.brings_record:
@@ -217,6 +220,10 @@ def attempt_match(job: Job) -> PlayedAlone | Phrase:
             return found._replace(record=here.record.read_bytes())
     except UserError as error:
         return error.phrase
+    except BaseException as error:  # no Ctrl-C comes to a worker process
+        traceback.print_exc()
+        what = traceback.format_exception_only(error)[-1].strip()
+        return say("simulate.broke", players=job.teams, error=what)
 
 
 def _is_lost(future: "Future[PlayedAlone | Phrase]") -> bool:
