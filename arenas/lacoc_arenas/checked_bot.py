@@ -6,6 +6,7 @@ reads the same in a headless match and at a court.
 
 import traceback
 from collections.abc import Callable
+from copy import deepcopy
 from types import FunctionType, MethodType
 from typing import Any
 
@@ -27,7 +28,8 @@ _A_KEY = say("expected.key", restart=RESTART_KEY)
 def checked(name: str, bot: BotFactory) -> BotFactory:
     """Return a bot that plays as the given bot does, and checks every result.
 
-    The returned bot and its brains raise UserError if the given bot or its brain fails, takes too
+    The bot gets a sheet of its own, so that it can change nothing that other bots see. The
+    returned bot and its brains raise UserError if the given bot or its brain fails, takes too
     long (`time_limit`), or returns something that is not allowed.
 
     Args:
@@ -38,7 +40,7 @@ def checked(name: str, bot: BotFactory) -> BotFactory:
     def make(sheet: Sheet, seat: int) -> Brain:
         timer = Timer(name)
         try:
-            brain = timer.begin(bot, sheet, seat)
+            brain = timer.begin(bot, deepcopy(sheet), seat)
         except KeyboardInterrupt:
             raise
         except BaseException as error:

@@ -72,6 +72,15 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
         play(tmp_path, brain(returns))
 
 
+def test_a_bot_changes_no_sheet_of_others(tmp_path: Path) -> None:
+    """What a bot does to its sheet, the bots in the other seats do not see."""
+    path = tmp_path / "my_bot.py"
+    path.write_text("def bot(sheet, seat):\n    sheet.settings['game'].clear()\n    return print\n")
+    sheet = Stage("othello").match.sheet()
+    brains.find(OTHELLO, str(path))(sheet, 0)
+    assert sheet.settings["game"]["pitch_m"]
+
+
 def test_a_brain_that_is_no_function(tmp_path: Path) -> None:
     """A brain may be an object of any class; if it has no line, the message names none."""
     text = "class Brain:\n    __call__ = lambda self, frame: 2\n"
