@@ -1,5 +1,7 @@
 """Find a bot by name: a game's own bot, an installed bot, a bot file, or the ghost of a record."""
 
+import hashlib
+import sys
 from collections import deque
 from pathlib import Path
 from types import ModuleType
@@ -171,8 +173,10 @@ def _from_source(name: str, source: bytes) -> BotFactory:
     Raises:
         UserError: if it fails, or has no function `bot`.
     """
-    module: Any = ModuleType(f"lacoc_bot_{Path(name).stem}")
+    digest = hashlib.blake2b(name.encode(errors="replace") + source, digest_size=6)
+    module: Any = ModuleType(f"lacoc_bot_{digest.hexdigest()}")
     module.__file__ = name
+    sys.modules[module.__name__] = module  # `dataclasses` looks there for the module of a class
 
     def load() -> None:
         exec(compile(source, name, "exec", dont_inherit=True), module.__dict__)

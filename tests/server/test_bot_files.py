@@ -72,6 +72,15 @@ def test_what_is_no_key(tmp_path: Path, returns: str) -> None:
         play(tmp_path, brain(returns))
 
 
+def test_annotations_may_be_texts(tmp_path: Path) -> None:
+    """A bot may have a dataclass with annotations that are texts, in its file and in `bot`."""
+    text = "from dataclasses import dataclass\n@dataclass\nclass Target:\n    key: 'int' = 2\n"
+    inner = "    @dataclass\n    class Memory:\n        target: 'Target'\n"
+    text += f"def bot(sheet, seat):\n{inner}"
+    text += "    return lambda frame: Key(1, Memory(Target()).target.key)\n"
+    assert play(tmp_path, text) == Key(Level.LOCOMOTION, 2)
+
+
 def test_a_bot_changes_no_sheet_of_others(tmp_path: Path) -> None:
     """What a bot does to its sheet, the bots in the other seats do not see."""
     path = tmp_path / "my_bot.py"
