@@ -18,6 +18,7 @@ from lacoc_client.play.terminal.keys import KeyDecoder
         ("２ｘ\u3000".encode(), ["2", "x", "space"]),  # with a Japanese input method
         (b"\x1b[1;5A\x1b[15~3", ["3"]),  # Ctrl-up and F5 are no keys here
         (b"\x1bx2", ["x", "2"]),  # Alt-x
+        (b"\x1b2", ["2"]),  # Esc or Alt before it, and nothing after it
         (b"\x00\x7f\r4", ["4"]),
     ],
 )
@@ -26,7 +27,10 @@ def test_bytes_become_keys(data: bytes, expected: list[str]) -> None:
     assert KeyDecoder().feed(data) == expected
 
 
-@given(st.lists(st.sampled_from([b"2", b"\x1b[A", b"\x1bOD", "２".encode(), b"\t"])), st.data())
+KEYS = [b"2", b"\x1b[A", b"\x1bOD", "２".encode(), b"\t", b"\x1b", b"\x1b2", b"\x1b[15~"]
+
+
+@given(st.lists(st.sampled_from(KEYS)), st.data())
 def test_a_sequence_may_come_in_pieces(keys: list[bytes], data: st.DataObject) -> None:
     """The bytes of a key give the same key whether they arrive together or in pieces."""
     whole = b"".join(keys)

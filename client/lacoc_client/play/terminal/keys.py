@@ -24,6 +24,8 @@ else:
     import tty
 
 _ESCAPE = re.compile(r"\x1b(?:\[[0-9;?]*[ -/]*[@-~]|O.)")
+_BEGUN = re.compile(r"\x1b(?:\[[0-9;?]*[ -/]*|O)?")
+"""The beginning of such a sequence; the rest of it may come with the next bytes."""
 _NAMES = {
     "\x1b[A": "up",
     "\x1b[B": "down",
@@ -78,7 +80,7 @@ class KeyDecoder:
                 name = _NAMES.get(sequence[0])
                 text = text[sequence.end() :]
             elif text[0] == "\x1b":
-                if len(text) < 3:
+                if _BEGUN.fullmatch(text):
                     self._rest = text
                     break
                 name, text = None, text[1:]
