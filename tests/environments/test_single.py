@@ -25,6 +25,7 @@ from lacoc_server.simulate.environments import (
     WalkVectorEnv,
     register,
 )
+from lacoc_server.trial import course
 from lacoc_shared.messages import SentFile
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
@@ -291,6 +292,23 @@ def walked(act: Callable[[int], Any], **arguments: Any) -> tuple[dict[str, float
     raise AssertionError("an episode without end")
 
 
+def sample_table() -> Any:
+    """Return the sample gait's postures of key 2, as actions."""
+    robot = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
+    assert robot.gait.locomotion is not None
+    return np.degrees(np.array(robot.gait.locomotion.sequences[2])) / 150
+
+
+def test_a_walk_is_cut_where_the_floor_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An episode is cut a metre before a wall, which would stop a robot that walks well."""
+    monkeypatch.setitem(course._FIELD["game"], "size_m", [2.1, 2.1])
+    table = sample_table()
+    total, steps, fell = walked(lambda step: table[step // 3 % 4])
+    assert not fell
+    assert 0.05 < total["speed_m_s"] * 0.1 < 0.06
+    assert steps < 50
+
+
 @pytest.mark.slow
 def test_to_walk_pays_and_to_fall_does_not() -> None:
     """The sample gait gets more than a robot that stands, and far more than one that falls.
@@ -298,8 +316,7 @@ def test_to_walk_pays_and_to_fall_does_not() -> None:
     The robot that falls throws itself forward, farther than the other one walks in that time.
     """
     robot = weigh_in(SentFile(*find_robot("hexapod")), *sample_gait_files("hexapod"))
-    assert robot.gait.locomotion is not None
-    table = np.degrees(np.array(robot.gait.locomotion.sequences[2])) / 150
+    table = sample_table()
     stand = np.degrees(np.array(robot.robot.start_posture)) / 150
     throw = np.repeat([[0.96, 0.18, -0.36], [-0.62, 0.35, -0.61], [0.16, 0.2, 0.92]], 2, axis=1)
     throw = throw[:, [0, 2, 4, 5, 3, 1]].ravel()  # the legs of both sides do the same

@@ -26,7 +26,7 @@ LONGEST_TICKS = SETTLE_TICKS + 60 * BEATS_PER_S
 """Longest trial with all its keys [ticks]."""
 
 _FIELD = {"game": {"size_m": [20.0, 20.0]}, "match": {"levels": ["B", "A"]}}
-"""Settings of the arena "practice" for trials. The field is so large that no robot reaches a wall.
+"""Settings of the arena "practice" for trials. The field is so large that no trial reaches a wall.
 Level B is open, so that robots stand before a key as in a contest."""
 
 

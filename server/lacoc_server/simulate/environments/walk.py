@@ -41,6 +41,8 @@ _FORWARD_WEIGHT, _CTRL_WEIGHT, _HEALTHY_REWARD = 20.0, 0.5, 1.0
 """Default weights in the reward, chosen for the sample gait's speed of 0.06 m/s."""
 _HEALTHY_UP = 0.5
 """A robot is falling if its `_up` is less than this: its body is tilted by 60 degrees or more."""
+_WALL_M = 1.0
+"""An episode is cut when the robot's middle is this near to a wall of the floor [m]."""
 _UNUSED: dict[str, dict[str, Any]] = {
     "angles": {"postures": _POSTURES},
     "table": {
@@ -88,7 +90,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
     With actions "angles" a step is 20 ms times `beats`. An action is one number for each joint, by
     joint id: -1 is the lowest angle of the joint's range, 1 the highest. Commanded angles move to
     these at the robot's own speed (AngMin). An episode ends when the robot falls: its body is
-    tilted by 60 degrees or more. After `seconds` it is cut.
+    tilted by 60 degrees or more. After `seconds` it is cut, and when the robot comes near the end
+    of the floor, 9 m from its start.
 
     The reward is that of Gymnasium's robots. It has three parts, which `infos` has too:
     "reward_forward" is the mean speed of the step [m/s], in the direction that the robot faced when
@@ -173,6 +176,7 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
         self._beats = beats
         self._most_steps = math.ceil(seconds * BEATS_PER_S / beats)
         self._arena = practice_field()
+        self._most_m = min(self._arena.game.size_m) / 2 - _WALL_M
         self._world = World(self._arena, [entry])
         self._course = make_course(self._spec) if self._tables else None
         self._begin = self._world.save()
@@ -235,8 +239,8 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
 
         Returns:
             What is seen; the reward; whether the episode ends because the robot falls (with a table
-            always True); whether time is up or physics stopped; and the parts of the reward, or all
-            measures of a table's trial.
+            always True); whether time is up, the floor ends or physics stopped; and the parts of
+            the reward, or all measures of a table's trial.
 
         Raises:
             UserError: if no episode has begun, if it is over, or the action space does not have the
@@ -256,9 +260,11 @@ class WalkEnv(gymnasium.Env[Numbers, Numbers]):
             if stopped:
                 break
         self._steps += 1
-        is_healthy = _up(self._world.pose()) > _HEALTHY_UP
+        pose = self._world.pose()
+        is_healthy = _up(pose) > _HEALTHY_UP
         fell = not is_healthy and self._ends_unhealthy
-        cut = stopped or self._steps >= self._most_steps
+        is_at_wall = bool(np.abs(pose[:2]).max() > self._most_m)
+        cut = stopped or is_at_wall or self._steps >= self._most_steps
         self._over = fell or cut
         speed_m_s = (self._ahead_m() - before) * BEATS_PER_S / self._beats
         weights = self._weights
