@@ -74,6 +74,17 @@ def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
     assert sum(line["points"] for line in last.values()) == 3 * 36
 
 
+def test_what_a_bot_prints_is_no_result(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All lines on standard output are JSON, whatever a bot prints."""
+    bot = tmp_path / "my_bot.py"
+    bot.write_text("print('load')\ndef bot(sheet, seat):\n    print('bot')\n    return print\n")
+    simulate_command([str(bot), "straight"], seconds=0.1, json=True)
+    shown = capsys.readouterr()
+    kinds = [json.loads(line)["kind"] for line in shown.out.splitlines()]
+    assert kinds == ["begin", "match", "standings"]
+    assert {"load", "bot"} < {*shown.err.splitlines()}
+
+
 def test_without_two_players_left_nothing_begins(tmp_path: Path) -> None:
     """If fewer than two players can play, the command fails and says why the others can't."""
     (anna,) = players_of(tmp_path, "anna")

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import CancelledError
@@ -31,6 +32,16 @@ def test_an_error_is_that_of_its_job(workers: Workers) -> None:
     with pytest.raises(WorkerFailed, match=r"ValueError: .*no number"):
         failed.result()
     assert workers.submit(os.getpid).result() == first != os.getpid()
+
+
+def test_what_a_job_prints_is_no_result(workers: Workers) -> None:
+    """What a job prints, such as a bot's own lines, goes to standard error."""
+    assert workers.submit(prints_to_standard_error).result()
+
+
+def prints_to_standard_error() -> bool:
+    """Say whether `print` writes to standard error in the process that calls this."""
+    return sys.stdout is sys.stderr
 
 
 def test_a_process_that_ends_is_replaced(workers: Workers) -> None:

@@ -115,7 +115,8 @@ def simulate_command(
     loaded = arenas.load(arena, overrides)
     seats = [seat.id for seat in loaded.seats]
     _check_number(players, len(seats), rounds)
-    out = _cannot_play(loaded, players, robot)
+    with screen.results_only():
+        out = _cannot_play(loaded, players, robot)
     fit = [name for name in players if name not in out]
     if out and json and leave_out:
         for name, why in out.items():

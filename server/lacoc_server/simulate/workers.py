@@ -3,6 +3,7 @@
 import contextlib
 import os
 import signal
+import sys
 import threading
 import time
 import traceback
@@ -258,6 +259,7 @@ def _work(
             still watches the bot's time.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles Ctrl-C
+    sys.stdout = sys.stderr  # the parent process prints the results
     if background:
         give_way()
 

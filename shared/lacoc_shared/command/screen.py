@@ -148,6 +148,11 @@ def _encodable(value: Any) -> Any:
     return value
 
 
+def results_only() -> contextlib.AbstractContextManager[object]:
+    """In the block, what other people's code prints goes to standard error, such as a bot's."""
+    return contextlib.redirect_stdout(sys.stderr)
+
+
 def progress() -> "Progress":
     """Make progress bars on standard error, one for each task; they disappear at the end."""
     from rich.progress import (  # half of the time that the other imports take

@@ -176,7 +176,9 @@ def _id(base: ForkJob, source: ForkSource, number: int) -> str:
 
 def _played(forks: Sequence[ForkJob], jobs: int | None) -> Iterator[tuple[ForkJob, Forked]]:
     if len(forks) == 1:
-        yield forks[0], play_fork(forks[0])
+        with screen.results_only():
+            forked = play_fork(forks[0])
+        yield forks[0], forked
         return
     with Workers(jobs, background=True, limit_s=_LONGEST_S) as workers, screen.progress() as bar:
         task = bar.add_task(render(say("fork.forks")), total=len(forks))

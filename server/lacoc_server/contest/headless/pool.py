@@ -291,7 +291,7 @@ def _name(seated: Seated) -> str:
 def play_alone(job: Job) -> PlayedAlone:
     """Play a match in this process; the errors are those of `ended`."""
     duration_s = arenas.load(job.arena, job.overrides).match.duration_s
-    with screen.progress() as progress:
+    with screen.results_only(), screen.progress() as progress:
         task = progress.add_task(" : ".join(job.teams), total=round(duration_s))
 
         def watch(frame: Frame) -> None:
