@@ -193,6 +193,16 @@ def test_a_bot_steers_what_lies_in_a_folder(tmp_path: Path) -> None:
     assert player(OTHELLO, 0, f"straight@{anna}").join.robot.data == find_robot("long-legs")[1]
 
 
+def test_a_folder_may_have_an_at(tmp_path: Path) -> None:
+    """The path of a bot file, and that of the folder which it steers, may have an "@"."""
+    anna = handed_in(tmp_path / "anna@example.org", sample())
+    bot = anna / "my_bot.py"
+    bot.write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
+    assert player(OTHELLO, 0, str(bot)).join.team == "my_bot"
+    assert player(OTHELLO, 0, f"{bot}@{anna}").join.team == "anna@example.org"
+    assert player(OTHELLO, 0, f"straight@{anna}").join.team == "anna@example.org"
+
+
 def test_a_workbook_in_a_folder_is_enough(tmp_path: Path) -> None:
     """The workbook is sent as text, and level B is made from it, as when a team enters."""
     ben = handed_in(tmp_path / "ben", None)

@@ -83,11 +83,22 @@ def seated(
         files = (was.robot, was.postures, was.locomotion)
         team = team or f"{was.team}'s ghost"
     else:
-        bot, brought, folder = bot.partition(_BROUGHT)
+        bot, brought, folder = _parted(bot)
         files = _of_folder(arena, Path(folder), robot) if brought else _of_robot(arena, robot)
         team = team or text_of(Path(folder).resolve().name) if brought else team
     join = JoinSeat(seat, team or text_of(Path(bot).stem), *files, token_hash="")
     return Seated(join, bot)
+
+
+def _parted(name: str) -> tuple[str, str, str]:
+    """Split a player's name into the bot, "@" and the folder; both are "" if there is no folder.
+
+    The name of a bot file ends with ".py"; a folder in its path may have an "@".
+    """
+    file, ended, folder = name.partition(f".py{_BROUGHT}")
+    if ended:
+        return f"{file}.py", _BROUGHT, folder
+    return (name, "", "") if name.endswith(".py") else name.partition(_BROUGHT)
 
 
 def _of_robot(arena: arenas.Arena, robot: str) -> _Files:
