@@ -71,6 +71,28 @@ def test_game_in_a_folder(race: Path) -> None:
     play_race(arena.from_settings(ground.name, ground.settings, ground.folder))
 
 
+def test_changed_code_of_a_folder_is_played(race: Path) -> None:
+    """Who changes the code of a game while Python runs plays the new code; an old arena stays."""
+    rules = race / "rules.py"
+    before = arena.load(str(race))
+    assert arena.load(str(race))._module == before._module, "nothing has changed"
+    text = rules.read_text()
+    rules.write_text(text.replace("(length_m, 1.0)", "(length_m, 1.25)"))
+    assert arena.load(str(race)).game.size_m == (3.0, 1.25)
+    rules.write_text("no Python")
+    with pytest.raises(UserError, match=r"rules.py, line 1\) raised SyntaxError"):
+        arena.load(str(race))
+    assert before.game.size_m == (3.0, 1.0)
+
+
+def test_a_folder_that_breaks_breaks_again(race: Path) -> None:
+    """A folder whose package raises an error is not taken for imported the next time."""
+    (race / "__init__.py").write_text("raise ImportError('not today')")
+    for _ in range(2):
+        with pytest.raises(ImportError, match="not today"):
+            arena.load(str(race))
+
+
 def test_a_folder_runs_no_code_because_a_record_names_it(race: Path) -> None:
     """A record can't make a court import a folder; only the user can, by naming it."""
     (race / "__init__.py").write_text("raise SystemExit('code of a stranger')")

@@ -68,9 +68,14 @@ def _loaded(group: str, name: str) -> ModuleType | None:
 
 
 def package_of_folder(folder: Path) -> ModuleType:
-    """Import a folder as a package with a unique name, so that its files can import each other."""
+    """Import a folder as a package with a unique name, so that its files can import each other.
+
+    The name depends on the Python files of the folder: changed code is imported as a new package.
+    """
     folder = folder.resolve()
-    name = f"lacoc_folder_{hashlib.blake2b(str(folder).encode(), digest_size=6).hexdigest()}"
+    files = [file for file in sorted(folder.glob("*.py")) if file.is_file()]
+    code = repr((str(folder), [(file.name, file.read_bytes()) for file in files]))
+    name = f"lacoc_folder_{hashlib.blake2b(code.encode(), digest_size=6).hexdigest()}"
     if name in sys.modules:
         return sys.modules[name]
     init = folder / "__init__.py"
@@ -83,8 +88,12 @@ def package_of_folder(folder: Path) -> ModuleType:
         spec.submodule_search_locations = [str(folder)]
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
-    if spec.loader is not None:
-        spec.loader.exec_module(module)
+    try:
+        if spec.loader is not None:
+            spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
 
 
