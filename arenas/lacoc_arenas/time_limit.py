@@ -103,7 +103,7 @@ class Timer:
 
     def __init__(self, bot: str) -> None:
         self.bot = bot
-        self._name = bot.encode()[: NAME_BYTES - 1]
+        self._name = bot.encode(errors="replace")[: NAME_BYTES - 1]
         self.used_s = 0.0
         """Processor time that the bot used in all frames [s]; the first of it by the clock."""
         self.waited_s = 0.0

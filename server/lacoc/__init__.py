@@ -125,7 +125,7 @@ def _play(
     from lacoc_server.simulate.headless import seated
 
     folder.mkdir(parents=True, exist_ok=True)
-    overrides = {"match": {"duration_s": seconds}} if seconds else {}
+    overrides = {"match": {"duration_s": seconds}} if seconds is not None else {}
     loaded = load(arena, overrides)
     job = Job(
         match_id=match_id(first_number(folder)),

@@ -193,6 +193,17 @@ def test_both_seats_see_the_same_when_the_field_is_turned(env: LacocParallelEnv)
     assert other["left"] != pytest.approx(other["right"], abs=1e-3)
 
 
+def test_a_short_match_stays_in_its_space() -> None:
+    """A restart may lock the keys for longer than the match; the space has such a number too."""
+    env = LacocParallelEnv(settings=SHORT, restart=True)
+    env.reset(seed=1)
+    restart = {agent: env.action_space(agent).n - 1 for agent in env.agents}  # type: ignore[attr-defined]
+    while env.agents:
+        seen = env.step(restart)[0]
+        assert all(seen[agent] in env.observation_space(agent) for agent in seen)
+    assert seen["left"][env.names.index("own locked_s")] > env.court.arena.match.duration_s
+
+
 def test_several_beats_in_a_step_are_the_same_match() -> None:
     """A step of ten beats equals ten steps of one beat with the same key."""
     one, ten = LacocParallelEnv(settings=SHORT), LacocParallelEnv(settings=SHORT, beats=10)

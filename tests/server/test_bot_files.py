@@ -1,5 +1,6 @@
 """Tests of bots in users' files: each mistake is reported with its line."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,13 @@ def test_annotations_may_be_texts(tmp_path: Path) -> None:
     text += f"def bot(sheet, seat):\n{inner}"
     text += "    return lambda frame: Key(1, Memory(Target()).target.key)\n"
     assert play(tmp_path, text) == Key(Level.LOCOMOTION, 2)
+
+
+def test_a_file_whose_name_is_no_text(tmp_path: Path) -> None:
+    """A bot file plays, whatever bytes its name has."""
+    path = (tmp_path / os.fsdecode(b"\x98\x8b")).with_suffix(".py")
+    path.write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
+    assert brains.find(OTHELLO, str(path))(Stage("othello").match.sheet(), 0)
 
 
 def test_a_bot_changes_no_sheet_of_others(tmp_path: Path) -> None:

@@ -79,6 +79,12 @@ def test_a_record_is_kept_where_it_is_wanted(tmp_path: Path) -> None:
     assert (again.match_id, again.winner) == (match.match_id, match.winner)
 
 
+def test_a_match_of_no_length_is_refused() -> None:
+    """A match of 0 s is not taken for one of the arena's length."""
+    with pytest.raises(UserError, match="has no time limit"):
+        lacoc.simulate("straight", "straight", seconds=0)
+
+
 def test_what_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the packages of a court, an error says what to install."""
     monkeypatch.setattr(lacoc, "find_spec", lambda _: None)

@@ -131,7 +131,8 @@ class AgentCourt:
         for one in order:
             high += [body.get(name, 1.0) for name in BODY]
             high += [np.pi] * self.entries[one].robot.joints
-        numbers = {"key": 9.0, "posture": 1000.0, "locked_s": duration_s}
+        locked_s = max(duration_s, self.arena.match.restart_freeze_s)
+        numbers = {"key": 9.0, "posture": 1000.0, "locked_s": locked_s}
         for _ in order:
             high += [numbers.get(name, _MOST) for name in SEAT]
         high += [duration_s for _ in CLOCK]
