@@ -109,7 +109,7 @@ def simulate(
     """
     _need("mujoco", extra="server")
     if record is not None:
-        return _play((left, right), arena, seconds, robot, Path(record))
+        return _play((left, right), arena, seconds, robot, Path(record).resolve())
     from lacoc_shared.command.scratch import Scratch
 
     with Scratch("simulate") as folder:

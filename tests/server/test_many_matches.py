@@ -14,9 +14,11 @@ import psutil
 import pytest
 from handed_in import players_of
 from lacoc_process import run_lacoc, started
+from typer.testing import CliRunner
 from waiting import LIMIT_S
 
-from lacoc_server.commands.simulate import simulate_command
+import lacoc
+from lacoc_server.commands.simulate import app, simulate_command
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.reader import Record
 
@@ -83,6 +85,22 @@ def test_what_a_bot_prints_is_no_result(tmp_path: Path, capsys: pytest.CaptureFi
     kinds = [json.loads(line)["kind"] for line in shown.out.splitlines()]
     assert kinds == ["begin", "match", "standings"]
     assert {"load", "bot"} < {*shown.err.splitlines()}
+
+
+@pytest.mark.slow
+def test_a_bot_may_go_to_another_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wherever a bot goes, the next match finds its files, and all records are kept together."""
+    monkeypatch.chdir(tmp_path)
+    away = "os.chdir(os.path.dirname(__file__) or '..')\n"
+    Path("my_bot.py").write_text(
+        f"import os\n{away}def bot(sheet, seat):\n    {away}    return lambda frame: None\n"
+    )
+    words = ["my_bot.py", "straight", "--seconds", "0.1", "--record", "kept"]
+    for more in ([], ["--both-sides", "--jobs", "1"]):
+        done = CliRunner().invoke(app, [*words, *more])
+        assert done.exit_code == 0, done.exception
+    lacoc.simulate("my_bot.py", "straight", seconds=0.1, record="kept")
+    assert len([*Path("kept").iterdir()]) == 4
 
 
 def test_without_two_players_left_nothing_begins(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing
+from contextlib import chdir, closing
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -95,7 +95,10 @@ def simulate_command(
         ),
     ] = False,
     record: Annotated[
-        Path | None, typer.Option(metavar="FOLDER", help="Folder for a record of each match.")
+        Path | None,
+        typer.Option(
+            metavar="FOLDER", help="Folder for a record of each match.", resolve_path=True
+        ),
     ] = None,
     json: options.Json = False,
 ) -> None:
@@ -115,7 +118,7 @@ def simulate_command(
     loaded = arenas.load(arena, overrides)
     seats = [seat.id for seat in loaded.seats]
     _check_number(players, len(seats), rounds)
-    with screen.results_only():
+    with screen.results_only(), chdir("."):  # a bot may go to another folder
         out = _cannot_play(loaded, players, robot)
     fit = [name for name in players if name not in out]
     if out and json and leave_out:

@@ -6,7 +6,7 @@ import signal
 import traceback
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -239,8 +239,7 @@ def _remove_half_record(job: Job) -> None:
 def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> PlayedAlone:
     arena = arenas.load(job.arena, job.overrides)
     setup = setup_of(job.match_id, arena, job.limits)
-    players = [_player(arena, one, job.late_ticks) for one in job.players]
-    refused = RefusedKeys(len(players))
+    refused = RefusedKeys(len(job.players))
 
     def see(frame: Frame) -> None:
         refused.see(frame)
@@ -248,7 +247,9 @@ def _play(job: Job, watch: Callable[[Frame], None] | None = None) -> PlayedAlone
             watch(frame)
 
     folder = Path(job.folder) if job.folder else None
-    result = simulate(setup, players, folder, see, arena.folder)
+    with chdir("."):  # a bot may go to another folder
+        players = [_player(arena, one, job.late_ticks) for one in job.players]
+        result = simulate(setup, players, folder, see, arena.folder)
     return PlayedAlone(result, None, refused.counts)
 
 
