@@ -1,18 +1,26 @@
 """The referee's desk: which requests become decisions, and which are refused."""
 
 import math
+import secrets
+import time
 from typing import Any
 
 import pytest
+from court_stub import make_scene
 from hypothesis import given
 from hypothesis import strategies as st
+from waiting import LIMIT_S
 
 from lacoc_server.doors.decision_desk import DecisionDesk
+from lacoc_server.doors.inbox import Inbox
+from lacoc_server.doors.network import CourtNetwork
 from lacoc_shared import decisions as d
 from lacoc_shared.codec import encode
 from lacoc_shared.contest import tokens
 from lacoc_shared.inputs import Decide
+from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, Refusal
+from lacoc_shared.network.session import open_client
 from lacoc_shared.words import Phrase, faults, render, say
 
 HASHES = [tokens.new_token_hash("other"), tokens.new_token_hash("whistle")]
@@ -139,3 +147,28 @@ def test_no_bytes_ever_raise(name: str, payload: bytes) -> None:
     assert isinstance(DecisionDesk(HASHES).outlook(payload), Refusal)
     assert isinstance(DecisionDesk(HASHES).decision(name, payload), Refusal)
     assert isinstance(DecisionDesk(HASHES).enter(payload), Refusal)
+
+
+def test_a_flood_of_wrong_tokens_pushes_no_decision_out() -> None:
+    """Among the requests of two beats of a flood, the referee's is heard in the next beat."""
+    keys = KeySpace("main")
+    inbox = Inbox(keys, ["left", "right"], lambda join, held: (join, ()), secrets.token_bytes)
+    with (
+        CourtNetwork(keys, ["tcp/127.0.0.1:0"], inbox, DecisionDesk(HASHES)) as court,
+        open_client([court.locators[0]]) as client,
+    ):
+        court.publish_scene(make_scene("a"))
+        key = keys.decision("halt")
+        wrong, right = (request(d.Halt(), token=token) for token in ("guess", "whistle"))
+        asked = [
+            client.question(key, one, LIMIT_S) for one in [*[wrong] * 25, right, *[wrong] * 35]
+        ]
+        scene = client.question(keys.scene, b"", LIMIT_S)
+        while scene.take() is None:  # requests come in their order: then all have come
+            court._serve_fetches()
+            time.sleep(0.01)
+        (arrival,) = court.poll(0.0, 1, 1, [True, True])
+        assert isinstance(arrival.input, Decide)
+        assert arrival.answer is not None
+        arrival.answer(Done())
+        assert asked[25].wait()

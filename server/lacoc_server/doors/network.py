@@ -40,8 +40,9 @@ from lacoc_shared.words import Phrase
 
 _RING = LOOKED_AT_PER_BEAT
 _DESK = 16
+_DECISION_DESK = LOOKED_AT_PER_BEAT  # a flood of wrong tokens must not push a decision out
 _FETCH_DESK = 256  # a crowd may arrive at once
-_REQUESTS_PER_BEAT = 4  # refused ones; at most one request of a desk enters a beat
+_ANSWERS_PER_BEAT = 4  # of a desk; at most one request of a desk enters a beat
 _FETCHES_PER_BEAT = 8
 
 
@@ -128,7 +129,8 @@ class CourtNetwork:
                 (session.desk(keys.request(seat, "try"), _DESK), _try_judge(inbox, try_out, index))
                 for index, seat in enumerate(inbox.seats)
             ]
-        self._desks.append((session.desk(keys.decision("*"), _DESK), self._judge_decision))
+        self._decisions = session.desk(keys.decision("*"), _DECISION_DESK)
+        self._desks.append((self._decisions, self._judge_decision))
         if look_ahead is not None:
             judge = _outlook_judge(decision_desk, look_ahead)
             self._desks.append((session.desk(keys.outlook, _DESK), judge))
@@ -203,7 +205,7 @@ class CourtNetwork:
         """
         refusal = encode(Refusal(why, again=True))
         for desk, _ in self._desks:
-            for _ in range(_REQUESTS_PER_BEAT):
+            for _ in range(_ANSWERS_PER_BEAT):
                 if (request := desk.take()) is not None:
                     request.refuse(refusal)
         self._serve_fetches()
@@ -281,7 +283,8 @@ class CourtNetwork:
         _serve(self._log_desk, lambda: encode(tuple(self._log)))
 
     def _let_in(self, desk: RequestQueue, judge: _Judge) -> Iterator[Arrival]:
-        for _ in range(_REQUESTS_PER_BEAT):
+        answered = 0
+        for _ in range(_DECISION_DESK if desk is self._decisions else _ANSWERS_PER_BEAT):
             if desk in self._waiting:
                 request, later = self._waiting.pop(desk)
                 judged: _Judged | _Later = later() or later
@@ -293,7 +296,9 @@ class CourtNetwork:
                 self._waiting[desk] = request, judged
                 return
             if isinstance(judged, Refusal):
-                request.refuse(encode(judged))
+                if answered < _ANSWERS_PER_BEAT:  # the senders of further ones hear nothing
+                    request.refuse(encode(judged))
+                answered += 1
             elif isinstance(judged, _Told):
                 request.reply(encode(judged))
             else:
