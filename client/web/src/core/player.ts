@@ -20,10 +20,12 @@ import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
+import { BACK_MS, isDriven } from "./way";
 import {
   BEAT_S,
   type Frame,
   type Gains,
+  type Health,
   type HeldSeat,
   Phase,
   REPEATS_HZ,
@@ -93,6 +95,11 @@ export class Player {
   private isFresh = true;
   private readonly posData = new PosDataLog();
   private readying = false;
+  /** When the page last saw a frame of the seat that it holds, by the clock: sleep counts. */
+  private heldMs = Number.POSITIVE_INFINITY;
+  private isAway = false;
+  /** What the court said last of the links before the connection broke. */
+  private oldHealth: Health | null = null;
   private signedMs = Number.NEGATIVE_INFINITY;
 
   /**
@@ -248,7 +255,9 @@ export class Player {
   private follow(): void {
     const { court } = this;
     effect(() => {
-      if (!court.connection.state.value.open) this.greeted.value = false;
+      if (court.connection.state.value.open) return;
+      this.greeted.value = false;
+      this.oldHealth = court.health.peek();
     });
     effect(() => {
       if (court.welcome.value) this.greeted.value = true;
@@ -285,8 +294,24 @@ export class Player {
     // asked again by the gateway.
     const isOpen =
       this.greeted.value && court.welcome.value?.can_act && court.link.value?.connected;
-    if (!isOpen || !this.wishHere.value || this.claim.value.request !== "none") return;
-    if (!this.isHeld()) untracked(() => this.tell({ is: "open" }));
+    const { request, state } = this.claim.value;
+    if (!isOpen || !this.wishHere.value || request !== "none" || this.isHeld()) return;
+    if (state === "holding" && this.wasAway()) {
+      const health = court.health.value;
+      if (health === this.oldHealth) return; // it comes twice a second
+      const seat = this.wishHere.peek()?.seat;
+      if (isDriven(health?.seats.find(({ id }) => id === seat))) {
+        untracked(() => this.tell({ is: "taken", why: { code: "hold.replaced" } }));
+        return;
+      }
+    }
+    untracked(() => this.tell({ is: "open" }));
+  }
+
+  /** Whether the page held the seat and then slept for long, or was without a line. */
+  private wasAway(): boolean {
+    this.isAway ||= Date.now() - this.heldMs > BACK_MS;
+    return this.isAway;
   }
 
   private tell(event: ClaimEvent): void {
@@ -348,6 +373,7 @@ export class Player {
   private begin(seat: string, index: number): void {
     this.sent = new SentKeys();
     this.isFresh = true;
+    this.isAway = false;
     // The gateway says so in its next message; until then nothing may ask again.
     this.court.seat.value = { seat, index, hold: HELD, reason: null };
   }
@@ -368,6 +394,8 @@ export class Player {
     const index = this.index.peek();
     const seat = frame.seats[index];
     if (!seat) return;
+    this.wasAway(); // a page that wakes up first sees the frames of before
+    this.heldMs = Date.now();
     this.sign();
     this.posData.add(frame, index, this.court.sheet.peek());
     if (this.isFresh) {

@@ -5,7 +5,7 @@ import { goToCourt, keepToken, ownToken } from "./address";
 import type { Refused } from "./connection";
 import type { Court } from "./court";
 import type { Player } from "./player";
-import { Driver, type Move, nextMove } from "./way";
+import { Driver, isDriven, type Move, nextMove } from "./way";
 import { Phase, type Whereabouts } from "./wire";
 
 const ASK_MS = 2000;
@@ -13,8 +13,6 @@ const LOOK_MS = 250;
 /** So long a result stays before the page goes on. */
 const RESULT_MS = 8000;
 const AGAIN_MS = 2500;
-/** Whoever was heard so lately drives the seat: a robot stands after a second (rules 3). */
-const HEARD_MS = 1500;
 const NO_TEAM = "refused.no-team-token";
 
 export class Team {
@@ -121,7 +119,7 @@ export class Team {
     const at = this.court.welcome.peek()?.court;
     if (!there || !at) return;
     const { held, wanted } = this.player.seats(at);
-    const isHeard = this.isDriven(there.seat);
+    const isHeard = isDriven(this.court.health.peek()?.seats.find(({ id }) => id === there.seat));
     const move = nextMove({
       there,
       court: at,
@@ -148,12 +146,6 @@ export class Team {
     const isSeated = this.player.standing.peek() === "seated";
     if (!call || call !== this.asked || isSeated || this.driven.peek()) this.unseated.value = null;
     else if (refusal) this.unseated.value = refusal;
-  }
-
-  /** Whether somebody holds the seat, and was heard lately. */
-  private isDriven(seat: string): boolean {
-    const link = this.court.health.peek()?.seats.find(({ id }) => id === seat);
-    return Boolean(link?.session) && (link?.heard_ms ?? Number.POSITIVE_INFINITY) < HEARD_MS;
   }
 
   private make(move: Move, there: Whereabouts, now: number): void {

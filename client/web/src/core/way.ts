@@ -1,6 +1,6 @@
 /** Where the page of a token goes next. Pure. */
 
-import type { Whereabouts } from "./wire";
+import type { SeatHealth, Whereabouts } from "./wire";
 
 /** What the page knows when it decides where to go. */
 export interface Situation {
@@ -51,8 +51,15 @@ export function nextMove(now: Situation): Move {
   return driven ? "ask" : "join";
 }
 
+/** Whoever was heard so lately drives the seat: a robot stands after a second (rules 3). */
+const HEARD_MS = 1500;
 /** A driver who was heard so long ago may still come back: a bad line, or a court that was killed. */
-const BACK_MS = 10_000;
+export const BACK_MS = 10_000;
+
+/** Whether somebody holds the seat of this link, and was heard lately. */
+export function isDriven(link: SeatHealth | undefined): boolean {
+  return Boolean(link?.session) && (link?.heard_ms ?? Number.POSITIVE_INFINITY) < HEARD_MS;
+}
 
 /** Remembers that somebody else drives the seat of a call, so that a short silence gives no seat away. */
 export class Driver {
