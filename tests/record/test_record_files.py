@@ -593,6 +593,17 @@ def test_a_damaged_time_ends_what_is_read(
     assert "stops after beat 1, and is damaged at byte" in words_of(record)
 
 
+def test_many_gaps_end_what_is_read(header: MakeHeader, tmp_path: Path) -> None:
+    """A few messages can't claim that days have passed: no program would count to their end."""
+    writer = RecordWriter(tmp_path, header())
+    for minutes in range(0, 24 * 60, 10):
+        writer.input(minutes * 60 * BEATS_PER_S, KeySeat(0, minutes + 1, 1, 2))
+    writer.close()
+    record = Record.read(writer.path)
+    assert record.last_beat == 3600 * BEATS_PER_S
+    assert "is damaged at byte" in words_of(record)
+
+
 @pytest.mark.parametrize(
     ("topic", "beat"),
     [("frame", 5), ("snapshot", 5), ("sheet", 5), ("scene", 5), ("touch", 5), ("input", 4)],

@@ -67,9 +67,9 @@ _COUNTED = frozenset(KINDS) - {"/lacoc/frame", "/lacoc/snapshot"}
 _NAME_MOST = 200
 """Longest name of a team in a record [characters]; courts accept shorter ones only."""
 
-_LONGEST_GAP_BEATS = 3600 * BEATS_PER_S
-"""A court records at least one frame a second, so a gap of more than an hour shows that a time is
-damaged. A program that counts all beats up to such a time would never end."""
+_SILENT_MOST_BEATS = 3600 * BEATS_PER_S
+"""A court records at least one frame a second. If a file's longer gaps together are more than an
+hour, a time is damaged. A program that counts all beats up to such a time would never end."""
 
 TakeBytes = Callable[[str, int, bytes], None]
 """Called with a message's topic, beat and bytes."""
@@ -147,14 +147,18 @@ def walk_bytes(path: Path, take: TakeBytes) -> Stop | None:
         raise UserError(say("recording.unreadable", file=str(path), why=why)) from None
     if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC[: len(data)]:
         raise UserError(say("recording.not-mcap", file=str(path)))
-    beat, whole, count = -1, len(MCAP0_MAGIC), 0
+    beat, silent, whole, count = -1, 0, len(MCAP0_MAGIC), 0
     topics: dict[int, str] = {}
     try:
         for at, end, opcode, source, first, last in _records(data):
             if opcode == Opcode.MESSAGE:
                 channel, _, time_ns, _ = _MESSAGE_HEAD.unpack_from(source, first)
                 topic = topics[channel]
-                beat = _next_beat(beat, time_ns // BEAT_NS, topic)
+                before, beat = beat, time_ns // BEAT_NS
+                if topic != "/lacoc/header":
+                    silent += max(0, beat - max(before, 0) - BEATS_PER_S)
+                    if silent > _SILENT_MOST_BEATS:
+                        raise codec.BadMessage(f"beat {beat} after beat {before}")
                 take(topic, beat, source[first + _MESSAGE_HEAD.size : last])
                 count += 1
             elif opcode == Opcode.CHANNEL:
@@ -241,17 +245,6 @@ def _is_cut(data: bytes, at: int) -> bool:
         return False
     length = int.from_bytes(data[at + 1 : at + _RECORD_HEAD.size], "little")
     return len(data) < at + _RECORD_HEAD.size + length <= at + _MAX_BYTES
-
-
-def _next_beat(before: int, beat: int, topic: str) -> int:
-    """Return `beat`, the beat of a message, after a check that it is plausible.
-
-    Raises:
-        BadMessage: if this beat can't follow the one before.
-    """
-    if topic != "/lacoc/header" and beat > max(before, 0) + _LONGEST_GAP_BEATS:
-        raise codec.BadMessage(f"beat {beat} after beat {before}")
-    return beat
 
 
 class _Found(NamedTuple):
