@@ -359,6 +359,26 @@ def test_a_draw_is_taken_back_until_somebody_has_played() -> None:
     assert len(cup.contest.stages) == 1
 
 
+def test_a_substitute_is_in_the_draw_that_is_made_again() -> None:
+    """Its place in a draw that was taken back is its own in the next one, too."""
+    cup = Cup("single-knockout")
+    cup.add(Entered, team="late", reason="a reserve", files="x")
+    cup.add(Planned, stage="finals", format="round-robin", after="cup", teams=2)
+    cup.add(Closed)
+    for _ in range(2):
+        play_open(cup, *(m.pairing.id for m in cup.contest.stages[0].matches if m.next_seats))
+    draw = due(cup.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    first, second = draw.entries
+    cup.append(draw)
+    cup.add(Substituted, team=first, substitute="late", reason="ill")
+    assert cup.contest.stages[1].stage.entries == ("late", second)
+    cup.add(Undrawn, stage="finals", reason="a wrong order")
+    draw = due(cup.contest, FORMATS)
+    assert isinstance(draw, Drawn)
+    assert draw.entries == ("late", second)
+
+
 def test_a_draw_stays_while_a_court_has_a_game_of_it() -> None:
     """Also if both were decided in the same moment; when the game is taken back, it can go."""
     cup = Cup("single-knockout")

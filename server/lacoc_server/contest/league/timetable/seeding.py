@@ -37,12 +37,18 @@ def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
     """Return the teams that a stage can have, the best first.
 
     Their order is the ranking of the stage before. If there is none, it is the order in which they
-    entered. Teams that have left can be among them.
+    entered. Teams that have left can be among them. In a draw that was taken back, substitutes had
+    places: they keep them.
     """
     before = {view.name: view for view in contest.stages}
-    if plan.after in before:
-        return before[plan.after].ranking
-    return tuple(team.name for team in contest.teams)
+    if plan.after not in before:
+        return tuple(team.name for team in contest.teams)
+    ranked = before[plan.after].ranking
+    if plan.stage not in contest.undrawn:
+        return ranked
+    instead = {team.name: team.substitute for team in contest.teams if team.substitute}
+    new = {team: one for team, one in instead.items() if one not in ranked}
+    return tuple(new.get(team, team) for team in ranked)
 
 
 def first_meetings(plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
