@@ -7,7 +7,7 @@ import pytest
 from hypothesis import settings
 
 # No deadline: the time of an example says more about the machine than about the code.
-settings.register_profile("quick", deadline=None, max_examples=40)
+settings.register_profile("quick", deadline=None, max_examples=20)
 settings.register_profile("thorough", deadline=None, max_examples=80)
 
 # The commands of these tests print English, also on a machine whose language is Japanese.
@@ -22,12 +22,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--long",
         action="store_true",
-        help="run also the tests marked long, and check each property with twice as many examples",
+        help="run also the tests marked long, and check each property with four times as many examples",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let 40 examples check each property, or 80 with --long.
+    """Let 20 examples check each property, or 80 with --long.
 
     Also keep the programs that tests start from writing bytecode.
     """
