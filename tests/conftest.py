@@ -22,7 +22,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--long",
         action="store_true",
-        help="run also the tests marked long, and check each property with four times as many examples",
+        help="run also the tests marked long, and check properties with 4 times as many examples",
     )
 
 

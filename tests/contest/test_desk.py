@@ -621,6 +621,7 @@ def test_a_match_is_moved(room: Room) -> None:
     assert slot.moved is not None
     assert slot.moved.court == other
     assert said(room.ask(Move(secret=KEY, pairing=last, court="east"))) == "desk.no-court"
+    assert said(room.ask(Move(secret=KEY, pairing=last, not_before_ms=1))) == "day.in-the-past"
     assert said(room.ask(Move(secret=KEY, pairing="x:a1.1"))) == "decide.no-match"
     assert said(room.ask(Move(secret=KEY, pairing=last, before=last))) == "desk.before-itself"
 

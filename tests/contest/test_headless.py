@@ -25,8 +25,10 @@ from lacoc_server.contest.kept.publish import tables
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import Played, Replaced, Replay, new
+from lacoc_server.contest.verify.games import check_game, games_of
 from lacoc_server.contest.verify.published import check_published, read
 from lacoc_server.simulate.headless import seated
+from lacoc_shared.command import plugins
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import pack
 from lacoc_shared.record.summary import Summary, summary
@@ -129,6 +131,24 @@ def test_a_game_without_an_end_is_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(UserError, match='stage "swiss" has no time limit'):
         small_contest.play(file)
+
+
+def test_a_contest_with_a_game_in_a_folder_may_be_moved(tmp_path: Path) -> None:
+    """Its game is found beside it again; what was played counts, and nobody calls it false."""
+    othello = plugins.folder_of(plugins.package("lacoc.arenas", "arena", "flag-strike"))
+    first = tmp_path / "first"
+    shutil.copytree(othello, first / "mine", ignore=shutil.ignore_patterns("__pycache__"))
+    stage = SWISS.replace('"flag-strike"', '"./mine"')
+    file = small_contest.enter(first, CONTEST + stage, dict([*BOTS.items()][:2]))
+    assert small_contest.play(file) > 0
+    first.rename(tmp_path / "second")
+    file = tmp_path / "second" / file.name
+    assert small_contest.play(file) == 0
+    published = small_contest.publish(file)
+    assert str(tmp_path) not in (published / "facts.json").read_text()
+    games = [check_game(published, game, proven=True) for game in games_of(read(published))]
+    assert [game.wrong for game in games] == [()] * len(games)
+    assert all("is not installed here" in render(game.unchecked[0]) for game in games)
 
 
 def test_a_contest_that_runs_is_not_run_again(copied: Path) -> None:

@@ -105,7 +105,7 @@ def test_a_game_in_a_folder_is_for_contests_without_courts(tmp_path: Path, form:
     where = folder(tmp_path, f'[stage.a]\nformat = "{form}"\narena = "./mine"\n')
 
     (found,) = filter(None, (*where.plans, where.open_stage))
-    assert found.arena == str(tmp_path / "mine")
+    assert Path(tmp_path, found.arena) == tmp_path / "mine"
     with pytest.raises(UserError, match=r"only installed games, not those in folders \(.*mine\)"):
         play_live(where.file, print, print, print)
 

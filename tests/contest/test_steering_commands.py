@@ -5,13 +5,22 @@ from pathlib import Path
 
 import pytest
 
+from lacoc_server.commands.contest import deciding
 from lacoc_server.contest.acts import organiser
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, compute
-from lacoc_server.contest.league.facts import Announced, Drawn, Moved, Unshifted
+from lacoc_server.contest.league.facts import (
+    Announced,
+    Drawn,
+    Moved,
+    Replaced,
+    Unshifted,
+    new,
+)
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.timetable.schedule import due
+from lacoc_shared.mistakes import UserError
 
 pytestmark = pytest.mark.slow
 
@@ -75,8 +84,9 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
     assert now.stages[0].stage.entries == tuple(reversed(drawn))
     assert [fact.by for fact in now.decisions if isinstance(fact, Drawn)] == ["", "Aiko"]
 
-    does("move", "finals:w2.1", "--court", "north", "--at", "23:59", says="Final is moved to court")
+    does("move", "finals:w2.1", "--court", "north", says="Final is moved to court")
     refuses("move", "finals:w2.1", "--at", "noon", says="14:05")
+    refuses("move", "finals:w2.1", "--at", "00:00", says="That time has passed")
     refuses("move", "finals:w7.1", says="w7.1")
     does("pause", "--reason", "a cable", says="Paused")
     refuses("pause", says="paused already")
@@ -105,3 +115,26 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
     does("staff", "Ben", says="/office#token=")
     does("staff", "Ben", "--remove", says="opens nothing")
     assert ContestFolder(file).contest.secrets.staff_names == ()
+
+
+def test_a_decision_does_what_was_shown_or_nothing(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another decision that comes before the answer stops one that would now do something else."""
+    where = ContestFolder(file)
+    with FactStore(where.facts) as store:
+        organiser.draw(store, organiser.drawing(compute(store.facts(), FORMATS)))
+    match = contest(file).stages[0].matches[0]
+    assert match.next_seats is not None
+    about = {"pairing": match.pairing.id, "game": 1, "teams": match.next_seats, "reason": "why"}
+    won = new(Replaced, scores=(9, 1), outcome="left", **about)
+
+    def answered(*_: object) -> bool:
+        with FactStore(where.facts) as store:
+            store.append(new(Replaced, scores=(0, 5), outcome="right", **about))
+        return True
+
+    monkeypatch.setattr(deciding, "wanted_so", answered)
+    with pytest.raises(UserError, match="Meanwhile"):
+        deciding.carry_out(file, "", lambda _: [won], asks=True)
+    assert contest(file).matches[match.pairing.id].games[0].scores == (0, 5)

@@ -156,6 +156,23 @@ def test_a_place_of_a_bracket_says_that_a_level_match_decided_it() -> None:
     ]
 
 
+@pytest.mark.parametrize("void", [True, False])
+def test_a_final_that_nobody_wins_has_no_winner(void: bool) -> None:
+    """If nobody came to the final, or it is void, both finalists are second."""
+    facts = Facts("single-knockout", "abcd", third_place=True)
+    facts.play(FIRST, 1, "a", "d", 1, 0).play("s:w1.2", 1, "b", "c", 1, 0)
+    facts.play("s:p1.1", 1, "c", "d", 2, 1)
+    final = {"pairing": "s:w2.1", "reason": "why"}
+    if void:
+        facts.add(Voided, teams=("a", "b"), **final)
+    else:
+        facts.add(NoShow, team="a", opponent="b", **final)
+        facts.add(NoShow, team="b", opponent="a", **final)
+    (table,) = facts.contest.stage("s").tables
+    ranks = {row.team: row.rank for row in table.rows}
+    assert ranks == {"a": 2, "b": 2, "c": 3, "d": 4}
+
+
 def test_difference_decides_before_the_seed() -> None:
     """If both teams have won a game and there is no extra one, the difference of points decides."""
     facts = Facts("single-knockout", "ab", games=2, extra_games=0)

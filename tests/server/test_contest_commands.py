@@ -140,7 +140,7 @@ def test_the_length_of_the_games_is_a_commented_line(tmp_path: Path) -> None:
     assert text.count(f"# {line} ") == 2
     file.write_text(text.replace(f"# {line} ", f"{line} "))
     assert "has no mistakes" in run("check", str(file))
-    matches = [game(plan).match for plan in plans(contests.load(file), file)]
+    matches = [game(plan, tmp_path).match for plan in plans(contests.load(file), file)]
     assert [(match.duration_s, match.start) for match in matches] == [(120.0, "ready")] * 2
 
 

@@ -1,8 +1,8 @@
 """Decide about a match, take a team out or draw a stage, after showing what that changes."""
 
 import sys
-from collections.abc import Iterable
-from typing import Annotated, Literal
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 from msgspec.structs import replace
@@ -12,6 +12,12 @@ from lacoc_server.commands.contest.setting_up import FILE
 from lacoc_shared.command import screen
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, render, say
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from lacoc_server.contest.league.contest import Contest
+    from lacoc_server.contest.league.facts import AnyFact
 
 Yes = Annotated[bool, typer.Option("--yes", help="Do it without asking.")]
 
@@ -43,10 +49,6 @@ def decide(
     played again; results that do not count any more are kept.
     """
     from lacoc_server.contest.acts import deciding
-    from lacoc_server.contest.kept.folder import ContestFolder
-    from lacoc_server.contest.kept.store import FactStore
-    from lacoc_server.contest.league.contest import compute
-    from lacoc_server.contest.league.formats.installed import FORMATS
 
     wanted = deciding.WantedDecision(
         kind=decision,
@@ -56,13 +58,8 @@ def decide(
         scores=_scores(score),
         reason=reason,
     )
-    with FactStore(ContestFolder(contest).facts, by) as store:
-        facts = store.facts()
-        fact = deciding.decision(compute(facts, FORMATS), wanted)
-        if not wanted_so(deciding.effect(facts, [fact]), yes):
-            return
-        store.append(fact)
-    screen.show(say("decide.done"))
+    if carry_out(contest, by, lambda now: [deciding.decision(now, wanted)], asks=True, yes=yes):
+        screen.show(say("decide.done"))
 
 
 def withdraw(
@@ -151,6 +148,56 @@ def draw(
             effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))
         if wanted_so(effect, yes):
             screen.show(organiser.draw(store, shown))
+
+
+def carry_out(
+    file: "Path",
+    by: str,
+    act: "Callable[[Contest], Sequence[AnyFact]]",
+    *,
+    asks: bool = False,
+    yes: bool = False,
+) -> "tuple[Contest, Sequence[AnyFact]] | None":
+    """Append the facts that `act` returns to the contest's facts.
+
+    Args:
+        file: the contest file.
+        by: who of the staff decides; "": the organiser.
+        act: returns the new facts for a given state of the contest.
+        asks: whether to show what the new facts change, and to ask before they are appended.
+        yes: do not ask.
+
+    Returns:
+        The contest before that, and the facts; None: the person does not want them.
+
+    Raises:
+        UserError: if `act` refuses, the facts can't be written, or they would change something else
+            by now than was shown.
+    """
+    from lacoc_server.contest.acts import deciding
+    from lacoc_server.contest.kept.folder import ContestFolder
+    from lacoc_server.contest.kept.store import FactStore
+    from lacoc_server.contest.league.contest import compute
+    from lacoc_server.contest.league.formats.installed import FORMATS
+
+    with FactStore(ContestFolder(file).facts, by) as store:
+        facts = store.facts()
+        now = compute(facts, FORMATS)
+        more = act(now)
+        shown = deciding.effect(facts, more) if asks else ()
+        if asks and not wanted_so(shown, yes):
+            return None
+
+        def decision(newest: "tuple[AnyFact, ...]") -> "Sequence[AnyFact]":
+            if newest == facts:
+                return more
+            found = act(compute(newest, FORMATS))
+            if asks and deciding.effect(newest, found) != shown:
+                raise UserError(say("decide.meanwhile"))
+            return found
+
+        store.decide(decision)
+    return now, more
 
 
 def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from lacoc_server.commands.contest.deciding import Yes, wanted_so
+from lacoc_server.commands.contest.deciding import Yes, carry_out
 from lacoc_server.commands.contest.inviting import link
 from lacoc_server.commands.contest.playing import By, ContestArgument, Reason, Team
 from lacoc_server.commands.contest.setting_up import FILE
@@ -47,7 +47,8 @@ def move(
     def moved(now: "Contest") -> "Sequence[AnyFact]":
         from lacoc_server.contest.acts.steering import moving
 
-        return [moving(now, courts, pairing, court, before, _ms_of(at) if at else 0)]
+        at_ms = _ms_of(at) if at else 0
+        return [moving(now, courts, pairing, court, before, at_ms, _now_ms())]
 
     _steer(contest, by, moved)
 
@@ -204,37 +205,11 @@ def _steer(
     asks: bool = False,
     yes: bool = False,
 ) -> None:
-    """Append the facts that `act` returns to the contest's facts, and print what was done.
-
-    Args:
-        file: the contest file.
-        by: who of the staff decides; "": the organiser.
-        act: returns the new facts for a given state of the contest; what was done is printed from
-            the last of them.
-        asks: whether to show what the new facts change, and to ask before they are appended.
-        yes: do not ask.
-
-    Raises:
-        UserError: if `act` refuses, or the facts can't be written.
-    """
-    from lacoc_server.contest.acts import deciding
-    from lacoc_server.contest.kept.folder import ContestFolder
-    from lacoc_server.contest.kept.store import FactStore
-    from lacoc_server.contest.league.contest import compute
-    from lacoc_server.contest.league.formats.installed import FORMATS
+    """Do as `carry_out` does, and print what was done: it follows from the last of the facts."""
     from lacoc_server.contest.league.timetable.steered import steered
 
-    with FactStore(ContestFolder(file).facts, by) as store:
-        facts = store.facts()
-        now = compute(facts, FORMATS)
-        more = act(now)
-        if asks and not wanted_so(deciding.effect(facts, more), yes):
-            return
-
-        def decision(newest: "tuple[AnyFact, ...]") -> "Sequence[AnyFact]":
-            return more if newest == facts else act(compute(newest, FORMATS))
-
-        store.decide(decision)
+    if (done := carry_out(file, by, act, asks=asks, yes=yes)) is not None:
+        now, more = done
         screen.show(steered(now, more[-1]))
 
 

@@ -32,6 +32,8 @@ from lacoc_server.contest.league.titles import title
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
+POINTS_MOST = 1_000_000
+"""Most points that a decision can give a team."""
 Kind = Literal["replay", "result", "void", "no-show"]
 """replay: the game is played again. result: the game counts with a result that the organiser gives.
 void: the match counts for nobody. no-show: a team did not come, and its opponent wins if the match
@@ -247,6 +249,8 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
         return new(Replay, game=wanted.game, teams=seats, **about)
     if wanted.scores is None:
         raise UserError(say("decide.needs-score"))
+    if not all(0 <= points <= POINTS_MOST for points in wanted.scores):
+        raise UserError(say("decide.large-score", most=POINTS_MOST))
     left, right = wanted.scores
     outcome: Outcome = "left" if left > right else "right" if right > left else "draw"
     given = {"game": wanted.game, "teams": seats, "scores": wanted.scores, "outcome": outcome}

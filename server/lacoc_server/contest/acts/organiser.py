@@ -279,7 +279,7 @@ def play_headless(
     with where.alone(), FactStore(where.facts) as store:
         prepare(where, store, headless=True)
         for plan in where.plans:
-            if not game(plan).match.duration_s:
+            if not game(plan, where.folder).match.duration_s:
                 raise UserError(say("contest.no-end", stage=plan.stage))
         writer = SheetWriter(where, progress)
         with engine as opened:

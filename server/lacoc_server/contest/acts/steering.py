@@ -35,6 +35,7 @@ def moving(
     court: str = "",
     before: str = "",
     not_before_ms: int = 0,
+    now_ms: int = 0,
 ) -> Moved:
     """Return the fact that moves a match to another court or time, or before another match.
 
@@ -47,10 +48,11 @@ def moving(
             schedule, also if it was moved before.
         not_before_ms: when it is called at the earliest, in milliseconds since 1970, UTC; 0: at any
             time.
+        now_ms: the time now, likewise.
 
     Raises:
-        UserError: if there is no such match or court, the match is decided, or it would have to be
-            played before itself.
+        UserError: if there is no such match or court, the match is decided, it would have to be
+            played before itself, or the time is in the past.
     """
     coming = {one.pairing.id for one in foreseen(contest, FORMATS)}
     if pairing not in coming and match_of(contest, pairing).decided:
@@ -61,6 +63,8 @@ def moving(
         raise UserError(say("desk.before-itself"))
     if court and court not in courts:
         raise UserError(say("desk.no-court", court=court, courts=[*courts]))
+    if not_before_ms and not_before_ms <= now_ms:
+        raise UserError(say("day.in-the-past"))
     return new(Moved, pairing=pairing, court=court, before=before, not_before_ms=not_before_ms)
 
 
@@ -146,26 +150,24 @@ def substituting(contest: Contest, team: str, substitute: str, reason: str) -> S
 def places(contest: Contest, team: str) -> list[tuple[str, ...]]:
     """Return, for each stage in which a team could give up its place, the teams of the stage.
 
-    These are the stages that are not over, and in which the team has a place but has played no
-    game.
+    These are the stages that are not over, and in which the team has a place but no result.
     """
     return [
         view.stage.entries
         for view in contest.stages
         if team in view.stage.entries
         and not view.over
-        and not any(team in game.teams for match in view.matches for game in match.games)
-        and stage_of(contest.ended_ms.get(team, ("", 0))[0]) != view.name  # also a void game
+        and team not in contest.with_result.get(view.name, ())
     ]
 
 
 def undrawable(contest: Contest) -> str:
     """Return the name of the newest stage if its draw can be taken back; else "".
 
-    It can if no game of the stage has a result.
+    It can if no match of the stage has a result.
     """
     newest = contest.stages[-1].name if contest.stages else ""
-    return "" if newest in contest.stages_ended_ms else newest
+    return "" if newest in contest.with_result else newest
 
 
 def undrawing(contest: Contest, stage: str, reason: str) -> list[Recalled | Undrawn]:

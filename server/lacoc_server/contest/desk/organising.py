@@ -191,7 +191,7 @@ def steer(
         match asked:
             case Move():
                 courts = book.where.contest.courts
-                where = (asked.court, asked.before, asked.not_before_ms)
+                where = (asked.court, asked.before, asked.not_before_ms, now_ms)
                 return steering.moving(contest, courts, asked.pairing, *where)
             case PauseContest():
                 return steering.pausing(contest, asked.until_ms, asked.reason, now_ms)

@@ -29,6 +29,7 @@ from lacoc_server.simulate import Seated
 from lacoc_server.simulate.inputs import BotFailed
 from lacoc_server.simulate.software import software
 from lacoc_server.simulate.workers import WorkerDied
+from lacoc_shared.contest.courts import beside
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.files import packed_path
 from lacoc_shared.record.summary import Summary, summary
@@ -115,7 +116,7 @@ def play_contest(
             continue
         known: list[Played | Replaced] = []
         busy = {game.name for game in playing.values()} | {*failed}
-        for game in _games(contest, facts, entry, steer, busy):
+        for game in _games(contest, facts, entry, steer, folder.folder, busy):
             if (fact := _result(game, folder, facts)) is not None:
                 known.append(fact)
             elif game.job.match_id in played:  # what was kept is no record, or was removed since
@@ -203,9 +204,13 @@ def _games(
     facts: tuple[AnyFact, ...],
     entry: Callable[[str], ContestEntry],
     steer: str,
+    folder: Path,
     busy: Container[tuple[str, int]],
 ) -> Iterator[_DueGame]:
-    """Yield the games that can be played now, except those in `busy`, which are being played."""
+    """Yield the games that can be played now, except those in `busy`, which are being played.
+
+    The path of an arena starts in `folder`.
+    """
     files = _files(contest)
     views = {match.pairing.id: view for view in contest.stages for match in view.matches}
     for match in playable(contest):
@@ -219,6 +224,7 @@ def _games(
             for seat, (team, one) in enumerate(zip(match.next_seats, entries, strict=True))
         )
         job = _job(views[match.pairing.id], seated, late)
+        job = msgspec.structs.replace(job, arena=beside(folder, job.arena))
         yield _DueGame(match, job, "" if all(one.bot for one in entries) else steer)
 
 

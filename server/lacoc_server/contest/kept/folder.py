@@ -33,7 +33,8 @@ class ContestFolder:
         """The stages in the order of the contest file, without the open stage."""
         self.open_stage = open_stage(self.contest, file)
         """The stage of open matches; None: there is none."""
-        folder = file.resolve().parent
+        self.folder = folder = file.resolve().parent
+        """Folder of the contest file; paths in the file start there."""
         self.facts = contests.facts_path(file)
         """File of the database of facts."""
         self.sheet = contests.sheet_path(file)
@@ -85,7 +86,7 @@ class ContestFolder:
         """The arenas of all stages but the open one; those with equal name and levels share one."""
         found: dict[tuple[str, tuple[Level, ...]], Arena] = {}
         for plan in self.plans:
-            arena = game(plan)
+            arena = game(plan, self.folder)
             found.setdefault((plan.arena, arena.match.open_levels), arena)
         return [*found.values()]
 

@@ -145,9 +145,9 @@ def _read(
         UserError: at the first wrong setting.
     """
     try:
-        plan = _plan(name, table, contest.limits, folder)
+        plan = _plan(name, table, contest.limits)
         _check(plan, before, [*contest.courts])
-        game(plan)
+        game(plan, folder)
     except msgspec.ValidationError as error:
         where, said = place_and_words(error)
         raise UserError(
@@ -171,13 +171,17 @@ def doubts(stages: Sequence[Planned]) -> Iterator[Phrase]:
             yield say("contest.may-meet-again", stage=plan.stage, after=plan.after)
 
 
-def game(plan: Planned) -> Arena:
+def game(plan: Planned, folder: Path) -> Arena:
     """Load the arena of a stage.
+
+    Args:
+        plan: the plan of the stage.
+        folder: folder of the contest file; the path of an arena starts there.
 
     Raises:
         UserError: if it is not installed, its settings are wrong, or it has not two seats.
     """
-    arena = arenas.load(plan.arena, plan.arena_settings)
+    arena = arenas.load(beside(folder, plan.arena), plan.arena_settings)
     if len(arena.seats) != 2:
         raise UserError(say("contest.not-for-two", arena=plan.arena))
     return arena
@@ -222,9 +226,7 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
     store.decide(decision)
 
 
-def _plan(
-    name: str, table: Mapping[str, Any], limits: Mapping[str, float], folder: Path
-) -> Planned:
+def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:
     own = {key: value for key, value in table.items() if key in _StageEntries.__struct_fields__}
     rest = {key: value for key, value in table.items() if key not in own}
     if unknown := [key for key in rest if key not in _SETTINGS]:
@@ -258,7 +260,7 @@ def _plan(
         final_court=stage.final_court,
         final_break_s=stage.final_break_s,
         teams=stage.teams,
-        arena=beside(folder, stage.arena),
+        arena=stage.arena,  # a path as it is written: the folder of the contest may be moved
         arena_settings=stage.settings,
         limits=dict(limits),
     )

@@ -132,6 +132,9 @@ class Contest(msgspec.Struct, frozen=True, kw_only=True):
     """The drawn stages, in the order of their draws."""
     planned: tuple[Planned, ...]
     """The plans of stages that are not drawn yet, in the order in which they were first made."""
+    with_result: dict[str, frozenset[str]]
+    """For each stage with results: the teams that have one, of a game or by a decision. They keep
+    their places, and the stage its draw."""
     undrawn: frozenset[str]
     """Names of the planned stages whose draw was taken back."""
     running: tuple[Called, ...]
@@ -256,7 +259,7 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
     """Compute a contest from facts in their order; the errors are those of `compute`."""
     unused: dict[str, Phrase] = {}
     teams = entered_teams(known, unused)
-    drawn, planned = drawn_stages(known, teams, formats, unused)
+    drawn, planned, with_result = drawn_stages(known, teams, formats, unused)
     valid = _of_newest_draws(known, unused)
     by_pairing: dict[str, list[OfMatch]] = {}
     for fact in valid:
@@ -284,6 +287,7 @@ def _computed(known: Sequence[AnyFact], formats: Mapping[str, Format]) -> Contes
             for fact in known
             if isinstance(fact, Undrawn) and fact.id not in unused and fact.stage in coming
         ),
+        with_result=with_result,
         running=_running(valid),
         moves=_moves(steering),
         decisions=decisions(known),

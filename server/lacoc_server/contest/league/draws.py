@@ -118,18 +118,18 @@ def drawn_stages(
     teams: Mapping[str, Team],
     formats: Mapping[str, Format],
     unused: dict[str, Phrase],
-) -> tuple[list[tuple[Planned, Stage]], list[Planned]]:
-    """Return the drawn stages, each with its plan, and the plans of the stages that are not drawn.
+) -> tuple[list[tuple[Planned, Stage]], list[Planned], dict[str, frozenset[str]]]:
+    """Return what is drawn and what is not.
 
-    The drawn stages are in the order of their draws.
+    Returns:
+        The drawn stages, each with its plan, in the order of their draws; the plans of the stages
+        that are not drawn; and, for each stage with results, the teams that have one: of a game,
+        also of a void one, or by a decision. A team that did not come is not among them: a
+        substitute may still come for it.
     """
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
-    played: set[tuple[str, str]] = set()
-    """Each stage with each team that has played in it."""
-    ruled: dict[str, tuple[str, ...]] = {}
-    """By pairing: the teams that have a result by a decision. A team that did not come is not among
-    them: a substitute may still come for it."""
+    results = _Results()
     called: set[tuple[str, int]] = set()
     """The games that are at a court, by pairing and number."""
     for fact in facts:
@@ -137,25 +137,17 @@ def drawn_stages(
             called.add((fact.pairing, fact.game))
         elif isinstance(fact, Recalled | Played):
             called.discard((fact.pairing, fact.game))
-        if isinstance(fact, Played):
-            played |= {(stage_of(fact.pairing), team) for team in fact.teams}
-        elif isinstance(fact, Replaced | Voided):
-            ruled[fact.pairing] = fact.teams
-        elif isinstance(fact, NoShow):
-            ruled[fact.pairing] = (*ruled.get(fact.pairing, ()), fact.opponent)
-        elif isinstance(fact, Replay):
-            ruled.pop(fact.pairing, None)
-        elif isinstance(fact, Substituted) and fact.id not in unused:
-            has_result = {name for name, team in played | _each(ruled) if team == fact.team}
+        results.take(fact)
+        if isinstance(fact, Substituted) and fact.id not in unused:
             for name, (plan, stage) in stages.items():
-                if name not in has_result:
+                if fact.team not in results.teams(name):
                     stages[name] = plan, _substituted(stage, fact)
         elif isinstance(fact, Undrawn):
             if fact.stage not in stages:
                 unused[fact.id] = say("league.not-drawn", stage=fact.stage)
             elif (
                 fact.stage != [*stages][-1]
-                or any(name == fact.stage for name, _ in played | _each(ruled))
+                or results.teams(fact.stage)
                 or any(stage_of(pairing) == fact.stage for pairing, _ in called)
             ):
                 unused[fact.id] = say("league.played-already", stage=fact.stage)
@@ -189,12 +181,37 @@ def drawn_stages(
             plan, stage = stages[fact.stage]
             drawn = (*stage.drawn, fact.pairs)
             stages[fact.stage] = (plan, msgspec.structs.replace(stage, drawn=drawn))
-    return [*stages.values()], [plan for name, plan in plans.items() if name not in stages]
+    planned = [plan for name, plan in plans.items() if name not in stages]
+    with_result = {name: found for name in stages if (found := results.teams(name))}
+    return [*stages.values()], planned, with_result
 
 
-def _each(ruled: Mapping[str, tuple[str, ...]]) -> set[tuple[str, str]]:
-    """Return each stage with each team of its ruled matches."""
-    return {(stage_of(pairing), team) for pairing, teams in ruled.items() for team in teams}
+class _Results:
+    """The teams that have results, as facts come one after another."""
+
+    def __init__(self) -> None:
+        self._played: dict[str, set[str]] = {}
+        """By pairing: the teams that have played."""
+        self._ruled: dict[str, set[str]] = {}
+        """By pairing: the teams that have a result by a decision."""
+
+    def take(self, fact: AnyFact) -> None:
+        """Take in a fact."""
+        match fact:
+            case Played():
+                self._played.setdefault(fact.pairing, set()).update(fact.teams)
+            case Replaced() | Voided():
+                self._ruled.setdefault(fact.pairing, set()).update(fact.teams)
+            case NoShow():
+                self._ruled.setdefault(fact.pairing, set()).add(fact.opponent)
+            case Replay():
+                self._ruled.pop(fact.pairing, None)
+
+    def teams(self, stage: str) -> frozenset[str]:
+        """Return the teams that have a result in a stage."""
+        every = (*self._played.items(), *self._ruled.items())
+        found = (teams for pairing, teams in every if stage_of(pairing) == stage)
+        return frozenset().union(*found)
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:

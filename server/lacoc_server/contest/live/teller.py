@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from secrets import token_bytes
 
-from lacoc_server.contest.kept.plans import game
+from lacoc_arenas import arena as arenas
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import AnyFact, Planned
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -138,5 +138,6 @@ class Teller:
         """Guess how long a game takes before any has ended: from the first stage's arena."""
         plans: list[Planned] = [view.plan for view in contest.stages] or list(contest.planned)
         if not self._first_ms and plans:
-            self._first_ms = round(1000 * game(plans[0]).match.duration_s) + _BETWEEN_MS
+            arena = arenas.load_installed(plans[0].arena, plans[0].arena_settings)
+            self._first_ms = round(1000 * arena.match.duration_s) + _BETWEEN_MS
         return self._first_ms

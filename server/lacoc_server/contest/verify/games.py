@@ -139,6 +139,9 @@ def check_game(folder: Path, game: GameToCheck, proven: bool, programs: bool = F
         if played.record_hash and hash_of(data) != played.record_hash:
             changed = say("verify.record-changed", record=file, about=about)
             return GameCheck(wrong=(changed,))
+        if not arenas.is_installed(arena := game.plan.arena if game.plan else ""):
+            why = say("unchecked.arena", arena=arena)
+            return GameCheck(unchecked=(_unchecked(game, why),))
         record = Record.read([folder / RECORDS / file])
         found = _compared(folder, game, record, programs)
         if not found.wrong and proven:

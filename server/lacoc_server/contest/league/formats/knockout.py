@@ -45,13 +45,14 @@ class Knockout(DrawnAtOnce):
         rows = tuple(sorted(rows, key=lambda row: (row.out, places.get(row.team, 0))))
         decided = {(match.winner, match.loser): match.how for match in _last(matches.values())}
         ranked: list[Standing] = []
+        best = 2 if _has_no_winner(matches.values(), places) else 1
         for number, row in enumerate(rows, 1):
             before = ranked[-1] if ranked else None
             tied = before is not None and (places.get(row.team, 0), row.out) == (
                 places.get(before.team, 0),
                 before.out,
             )
-            rank = before.rank if before is not None and tied else number
+            rank = before.rank if before is not None and tied else max(number, best)
             how = decided.get((before.team, row.team), "") if before is not None else ""
             code = how if how in _LEVEL else ""
             ranked.append(msgspec.structs.replace(row, rank=rank, shares=False, decided_by=code))
@@ -63,6 +64,12 @@ def _last(matches: Iterable[ContestMatch]) -> Iterator[ContestMatch]:
     for match in matches:
         if match.pairing.winner_place and match.state == "decided":
             yield match
+
+
+def _has_no_winner(matches: Iterable[ContestMatch], places: Mapping[str, int]) -> bool:
+    """Return whether the final is decided, and nobody has won it: no team came, or it is void."""
+    finals = [match for match in matches if match.pairing.winner_place == 1]
+    return bool(finals) and all(match.decided for match in finals) and 1 not in places.values()
 
 
 def _places(matches: Collection[ContestMatch]) -> dict[str, int]:
