@@ -129,7 +129,7 @@ def drawn_stages(
     """
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
-    results = _Results()
+    results = _TeamsWithResults()
     called: set[tuple[str, int]] = set()
     """The games that are at a court, by pairing and number."""
     for fact in facts:
@@ -186,7 +186,7 @@ def drawn_stages(
     return [*stages.values()], planned, with_result
 
 
-class _Results:
+class _TeamsWithResults:
     """The teams that have results, as facts come one after another."""
 
     def __init__(self) -> None:
