@@ -145,6 +145,12 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     ]
     assert "joint 17 (L,F)" in rows.nth(1).inner_text()
     page.sees("main[data-standing=outside]")
+    page.page.set_viewport_size({"width": 667, "height": 260})
+    page.find(".entrance-place").evaluate("(place) => place.scrollTo(0, 0)")
+    top = page.find(".entrance").bounding_box()
+    assert top is not None
+    assert top["y"] >= 0, "what is higher than the window can be scrolled to its top"
+    page.page.set_viewport_size({"width": 1280, "height": 720})
 
     sample = sample_gait_files("hexapod").locomotion
     assert sample is not None
@@ -529,7 +535,19 @@ def test_views_focus_and_input_method(venue: Venue, sit: Sit) -> None:
         page.press("Space")
         page.sees(".badge", f"View {number}/3")
         page.until(f"window.__lacoc.view?.camera === '{camera}'")
-    other = playing(venue, page)
+    page.page.keyboard.down("m")
+    page.page.keyboard.down("m")  # held too long
+    page.page.keyboard.up("m")
+    assert page.page.evaluate("localStorage['lacoc.sound']") == "false"
+    page.page.click("button.ready")
+    other, referee = venue.contestant("right", "Bees"), venue.referee()
+    page.phase(Phase.READY)
+    page.page.get_by_role("button", name="Settings").click()
+    page.sees("dialog[open] .keytest")
+    referee.phase(Phase.READY)
+    referee.ask("decide", decision={"type": "start"}, reason="")
+    page.phase(Phase.PLAYING)
+    page.misses("dialog[open]")  # nothing may take the keyboard from who plays
     page.until("document.activeElement.matches('.field3d')")
     page.page.click(".leave")
     page.page.get_by_role("button", name="Stay").click()

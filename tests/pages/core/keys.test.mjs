@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { readKey } from "../../../client/web/src/core/keys.ts";
+import { nameOfKey, readKey } from "../../../client/web/src/core/keys.ts";
 
 const key = (code, held = {}) => readKey({ code, key: "Process", keyCode: 229, ...held });
 
@@ -27,6 +27,30 @@ test("digits and arrows are known by their place, whatever they type", () => {
     arrows.map((code) => key(code).digit),
     [2, 1, 3, 0],
   );
+});
+
+test("letters and signs are known by what they type", () => {
+  const typed = (code, text) => key(code, { key: text, keyCode: 0 });
+  assert.equal(typed("KeyY", "z").does, "leave"); // QWERTZ
+  assert.equal(typed("KeyZ", "y"), null);
+  assert.equal(typed("KeyB", "X").does, "restart"); // Dvorak, Caps Lock
+  assert.equal(typed("KeyZ", "я").does, "leave"); // a keyboard without z
+  assert.deepEqual(typed("Digit6", "-"), { does: "digit", digit: 6 }); // AZERTY
+  const names = [
+    ["Semicolon", "+", "Equal"], // JIS
+    ["Minus", "ß", "ß"],
+    ["Slash", "-", "Minus"],
+    ["KeyM", ",", "Comma"], // AZERTY
+    ["Comma", ";", ";"],
+    ["Comma", "Process", "Comma"],
+  ];
+  for (const [code, text, name] of names) assert.equal(nameOfKey({ code, key: text }), name);
+});
+
+test("what a program types for a person counts, though it has no place", () => {
+  assert.deepEqual(key("", { key: "7" }), { does: "digit", digit: 7 });
+  assert.equal(key("", { key: "ArrowUp" }).digit, 2);
+  assert.equal(key("", { key: " " }).does, "view");
 });
 
 test("the browser's own keys stay its own", () => {

@@ -1,6 +1,7 @@
-/** Keys of a page, by their place on the keyboard. */
+/** Keys of a page, by their names (`nameOfKey`). */
 
 import { useEffect } from "preact/hooks";
+import { nameOfKey } from "../core/keys";
 
 type Keys = Record<string, (event: KeyboardEvent) => void>;
 
@@ -11,16 +12,17 @@ const ARROWS = /^(Arrow|Home|End|Page)/;
 /**
  * Listen for keys while the page is there.
  *
- * @param keys By `event.code`. What a focused control does with a key itself stays its own.
+ * @param keys By name. What a focused control does with a key itself stays its own.
  */
 export function useShortcuts(keys: Keys): void {
   useEffect(() => {
     const press = (event: KeyboardEvent) => {
-      const act = keys[event.code];
+      const name = nameOfKey(event);
+      const act = keys[name];
       if (!act || event.ctrlKey || event.altKey || event.metaKey) return;
       if (takesKey(event)) return;
       event.preventDefault();
-      if (!event.repeat || STEPS.test(event.code)) act(event);
+      if (!event.repeat || STEPS.test(name)) act(event);
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);

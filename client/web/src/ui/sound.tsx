@@ -4,6 +4,7 @@ import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { flag } from "../core/address";
 import { type Cue, type CueName, cuesBetween, type Heard, heardAt } from "../core/cues";
+import { nameOfKey } from "../core/keys";
 import type { Match } from "../core/match";
 import { isLoud } from "../core/settings";
 import { BEATS_PER_S } from "../core/wire";
@@ -48,7 +49,8 @@ export function Sound({ match, isQuiet = false, own = -1 }: Props) {
   }, [match, isQuiet, own]);
   useEffect(() => {
     const mute = (event: KeyboardEvent) => {
-      if (event.code !== "KeyM" || isTyping(event) || event.ctrlKey || event.metaKey) return;
+      if (event.ctrlKey || event.altKey || event.metaKey || event.repeat) return;
+      if (nameOfKey(event) !== "KeyM" || isTyping(event)) return;
       isLoud.value = !isLoud.peek();
       wake();
     };

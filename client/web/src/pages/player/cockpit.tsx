@@ -161,7 +161,7 @@ export function Cockpit({ alone }: { alone: boolean }) {
       phase.value === Phase.COUNTDOWN && !alone && player.standing.peek() === "seated";
     if (isBegun) {
       hideKeys();
-      if (["leave", "files", "linktest"].includes(open.peek())) close();
+      if (open.peek()) close();
     }
     if (phase.value < Phase.COUNTDOWN || phase.value > Phase.HALTED) leaving.end();
   });

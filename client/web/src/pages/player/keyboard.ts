@@ -10,7 +10,7 @@
 
 import type { Signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { isFromInputMethod, LEAVE, type Pressed, readKey } from "../../core/keys";
+import { isFromInputMethod, nameOfKey, type Pressed, readKey } from "../../core/keys";
 import { isTyping } from "../../ui/shortcuts";
 
 const INPUT_METHOD_MS = 8000;
@@ -59,7 +59,8 @@ export function useKeyboard(
       if (!event.repeat) steering.act(pressed, event.timeStamp);
     };
     const release = (event: Event) => {
-      if (event instanceof KeyboardEvent && event.code !== LEAVE) return;
+      // Any letter: with an input method a key may go up under another name than it went down.
+      if (event instanceof KeyboardEvent && !nameOfKey(event).startsWith("Key")) return;
       steering.leaveReleased();
     };
     window.addEventListener("keydown", take);
