@@ -173,6 +173,17 @@ def test_a_club_that_a_command_gave_is_shown(room: Room) -> None:
     assert [(row.team, row.club) for row in room.view.teams] == [("Ants", "Kyoto")]
 
 
+def test_a_club_that_the_organiser_changed_stays(room: Room) -> None:
+    """What a team typed when it applied is not its club any more once the organiser changed it."""
+    room.ask(Apply(secret=CODE, team="Bees", files=sample(), club="Tokio"))
+    room.ask(Approve(secret=KEY, teams=("Bees",)))
+    organiser.enter(room.file, "Bees", None, "", "", club="Tokyo")
+    assert [row.club for row in room.view.teams] == ["Tokyo"]
+    organiser.take_out(room.file, "Bees", "", disqualified=False)
+    room.ask(Approve(secret=KEY, teams=("Bees",)))
+    assert [team.club for team in compute(room.facts, FORMATS).teams] == ["Tokyo"]
+
+
 @pytest.mark.parametrize("teams", [0, 1, 2])
 def test_entries_do_not_close_by_themselves_without_teams(tmp_path: Path, teams: int) -> None:
     """An application after the time for it closes entries only if there are teams to play."""

@@ -22,6 +22,7 @@ from lacoc_server.contest.kept.entries import EntryFolder, gather_entry, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.decided import decided
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Closed,
@@ -316,6 +317,34 @@ def test_after_the_deadline_only_a_reason_helps(cup: Cup) -> None:
     assert [team.name for team in contest.teams] == ["Ann", "Bob", "Cy"]
     assert [fact.id for fact in contest.decisions] == [cup.facts[-2].id, last.id]
     assert sum(isinstance(fact, Closed) for fact in cup.facts) == 1
+
+
+def test_the_club_of_a_team_can_change(cup: Cup) -> None:
+    """Entering again with another club changes it, with the same files or others.
+
+    Without a club it stays as it was, also if the team left meanwhile. After the end of entries the
+    change needs a reason, and is a decision.
+    """
+
+    def enter(bot: str, club: str | None, reason: str = "") -> tuple[str, str]:
+        code = organiser.enter(cup.file, "Bees", None, bot, reason, club=club).code
+        (team,) = compute(cup.facts, FORMATS).teams
+        return code, team.club
+
+    assert enter("planner", None) == ("contest.entered", "")
+    assert enter("planner", "Tokyo") == ("contest.entered-club", "Tokyo")
+    assert enter("nearest", None) == ("contest.entered-again", "Tokyo")
+    assert enter("nearest", "Tokyo") == ("contest.entered-same", "Tokyo")
+    assert enter("planner", "Kyoto") == ("contest.entered-again", "Kyoto")
+    cup.out("Bees")
+    assert enter("planner", None) == ("contest.entered-back", "Kyoto")
+    with FactStore(ContestFolder(cup.file).facts) as store:
+        store.append(new(Closed))
+    with pytest.raises(UserError, match="--reason"):
+        enter("planner", "")
+    assert enter("planner", "", "a mistake") == ("contest.entered-club", "")
+    decision = decided(compute(cup.facts, FORMATS))[-1]
+    assert render(decision.what) == "The entry of Bees was changed after entries were closed"
 
 
 def test_entries_that_were_opened_stay_open(cup: Cup) -> None:

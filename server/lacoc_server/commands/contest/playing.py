@@ -55,12 +55,12 @@ def enter(
     contest: ContestArgument = FILE,
     reason: Reason = "",
     club: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="NAME",
             help="Its school or club; a stage with apart = true draws teams of one club apart.",
         ),
-    ] = "",
+    ] = None,
     by: By = "",
 ) -> None:
     """Enter a team with its files; they are weighed in at once, and frozen.

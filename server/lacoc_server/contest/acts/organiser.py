@@ -47,10 +47,10 @@ def enter(
     reason: str,
     found: Callable[[HandedIn], None] = lambda _: None,
     *,
-    club: str = "",
+    club: str | None = None,
     by: str = "",
 ) -> Phrase:
-    """Enter a team, or change the files of a team that has entered; say what was done.
+    """Enter a team, or change the files or the club of one that has entered; say what was done.
 
     Args:
         file: the contest file.
@@ -59,7 +59,7 @@ def enter(
         bot: the bot that plays for it; "": people play.
         reason: why the team enters, or its files change; needed once entries are closed.
         found: called with the team's files before they are weighed in.
-        club: its school or club; "": none.
+        club: its school or club; "": none; None: as before, or none.
         by: who of the staff decides; "": the organiser.
 
     Raises:
@@ -94,9 +94,9 @@ def enter_weighed(
     team: str,
     entry: ContestEntry,
     reason: str,
-    club: str = "",
+    club: str | None = None,
 ) -> Phrase:
-    """Enter a team with a weighed entry, or change the files of a team that has entered.
+    """Enter a team with a weighed entry, or change the files or the club of one that has entered.
 
     Say what was done.
 
@@ -106,7 +106,7 @@ def enter_weighed(
         team: name of the team, from `team_name`.
         entry: its files and its bot.
         reason: why the team enters, or its files change; needed once entries are closed.
-        club: its school or club; "": none.
+        club: its school or club; "": none; None: as before, or none.
 
     Raises:
         UserError: if the team can't enter, or the files can't be written.
@@ -123,7 +123,9 @@ def enter_weighed(
         may_come = bool(late) or not contest.closed
         if there is not None and there.gone and (contest.closed or not there.may_return):
             raise UserError(say("contest.gone-for-good", team=team))
-        if there is not None and not there.gone and there.files == entry.hash:
+        same_files = there is not None and there.files == entry.hash
+        other_club = there is not None and club not in (None, there.club)
+        if there is not None and not there.gone and same_files and not other_club:
             return
         alike = next((name for name in known if look_alike(name, team)), None)
         if team not in known and alike is not None:
@@ -136,13 +138,15 @@ def enter_weighed(
         used = {"team": team, "files": files, "bot": entry.bot, "picture": bool(entry.picture)}
         if there is not None and there.gone:
             said = say("contest.entered-back", team=team, hash=files)
-            yield new(Entered, **used, club=club, reason=late)
+            yield new(Entered, **used, club=there.club if club is None else club, reason=late)
         elif there is not None:
             said = say("contest.entered-again", team=team, hash=files)
-            yield new(FilesChanged, **used, reason=reason)
+            if same_files:
+                said = say("contest.entered-club", team=team, club=club or None)
+            yield new(FilesChanged, **used, club=club if other_club else None, reason=reason)
         else:
             said = say("contest.entered", team=team, hash=files)
-            yield new(Entered, **used, club=club, reason=late)
+            yield new(Entered, **used, club=club or "", reason=late)
 
     store.decide(decision)
     return said

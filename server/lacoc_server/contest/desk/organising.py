@@ -49,7 +49,7 @@ def approve(book: Book, asked: Approve) -> Said:
             entry = book.where.entries.load(there.files)
         else:
             raise UserError(say("desk.no-application", team=team))
-        club = book.contacts.of(team).club
+        club = book.contacts.of(team).club if there is None else None
         done = organiser.enter_weighed(book.where, book.store, team, entry, asked.reason, club)
         book.applications.drop(team)
         said.append(done)

@@ -130,7 +130,7 @@ def _teams(book: Book) -> Iterator[TeamRow]:
         yield msgspec.structs.replace(
             row,
             contact=told.reach,
-            club=told.club or clubs.get(row.team, ""),
+            club=clubs.get(row.team, told.club),
             substitute=bool(places(contest, row.team)),
             reserve=row.state in ("in", "late") and not any(row.team in one for one in played),
         )

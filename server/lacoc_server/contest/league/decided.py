@@ -72,8 +72,10 @@ def in_words(contest: Contest, fact: OfDecision) -> Phrase:
             return say("decided.withdrawn", team=fact.team)
         case Disqualified():
             return say("decided.disqualified", team=fact.team)
-        case FilesChanged():
+        case FilesChanged(club=None):
             return say("decided.files-changed", team=fact.team)
+        case FilesChanged():
+            return say("decided.club-changed", team=fact.team, club=fact.club or None)
         case NoShow():
             said = named(contest, fact.pairing)
             return say("decided.no-show", match=said, team=fact.team)

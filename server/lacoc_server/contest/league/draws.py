@@ -101,7 +101,8 @@ def entered_teams(facts: Sequence[AnyFact], unused: dict[str, Phrase]) -> dict[s
                     continue
             team = teams[fact.team]
             if isinstance(fact, FilesChanged):
-                used = {"files": fact.files, "bot": fact.bot, "picture": fact.picture}
+                club = team.club if fact.club is None else fact.club
+                used = {"files": fact.files, "bot": fact.bot, "picture": fact.picture, "club": club}
                 team = msgspec.structs.replace(team, **used)
             elif isinstance(fact, Substituted):
                 team = msgspec.structs.replace(team, withdrawn=True, substitute=fact.substitute)

@@ -86,12 +86,14 @@ class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
 
 
 class FilesChanged(Fact, frozen=True, kw_only=True, tag="files-changed"):
-    """The files with which a team plays are replaced by others."""
+    """The files with which a team plays, or its club, are replaced by others."""
 
     team: Name
     files: str
     bot: str = ""
     picture: bool = False
+    club: Annotated[str, msgspec.Meta(max_length=64)] | None = None
+    """The school or club of the team from now on; "": none; None: as before."""
     reason: str = ""
     """Why the files change; "" only while entries are open."""
 
