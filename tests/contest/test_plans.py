@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from small_contest import CONTEST
 
+from lacoc_server.commands.contest.setting_up import check
 from lacoc_server.contest.kept.folder import ContestFolder
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.kept.store import FactStore
@@ -153,7 +154,10 @@ def test_a_stage_that_is_renamed_keeps_its_place(tmp_path: Path) -> None:
 
 
 def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
-    """A changed plan is a new fact until its stage is drawn; later the change is refused."""
+    """A changed plan is a new fact until its stage is drawn; later the change is refused.
+
+    The refusal names the entry, and `lacoc contest check` has the same.
+    """
     where = folder(tmp_path, GROUPS)
     with FactStore(where.facts) as store:
         for stages in (GROUPS, GROUPS, f"{GROUPS}games = 3\n"):
@@ -164,8 +168,18 @@ def test_a_plan_can_change_until_the_draw(tmp_path: Path) -> None:
         last = f'{GROUPS}games = 3\n[stage.last]\nformat = "swiss"\n'
         note_plans(store, folder(tmp_path, last).plans)
         assert [fact.stage for fact in store.facts() if isinstance(fact, Planned)][2:] == ["last"]
-        with pytest.raises(UserError, match=r'Stage "groups" has been drawn'):
-            note_plans(store, folder(tmp_path, last.replace("games = 3", "games = 5")).plans)
+        for changed, entry in (
+            (last.replace("games = 3", "games = 5"), r"stage\.groups\.games"),
+            (last.replace("games = 3", "games = 3\nsettings.match.countdown_s = 1.0"), "settings"),
+            (last + "[limits]\nlegs_max = 7\n", r"\[limits"),
+        ):
+            now = folder(tmp_path, changed)
+            refused = rf'Stage "groups" has been drawn, so .*{entry}\] can\'t change'
+            with pytest.raises(UserError, match=refused):
+                note_plans(store, now.plans)
+            with pytest.raises(UserError, match=refused):
+                check(now.file)
+        check(folder(tmp_path, last).file)
         assert len(store.facts()) == 7
 
 

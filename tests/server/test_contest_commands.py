@@ -99,10 +99,11 @@ def test_a_contest_of_open_matches_is_written(tmp_path: Path) -> None:
         ("# settings.match.duration_s = 120.0", 'settings.match.duration_s = "long"', "duration_s"),
         ("# settings.match.duration_s = 120.0", "settings.match.duratoin_s = 1.0", "duratoin_s"),
         ("# legs_max = 8", "legs_maxx = 8", "legs_maxx"),
+        ('robot = "hexapod"', 'robot = "missing.toml"', r"missing\.toml"),
     ],
 )
 def test_check_looks_into_arena_and_limits(tmp_path: Path, old: str, new: str, said: str) -> None:
-    """`check` finds a wrong arena, setting, limit or seat before a court starts."""
+    """`check` finds a wrong arena, setting, limit or robot before a court starts."""
     file = tmp_path / "contest.toml"
     run("init", str(file))
     text = file.read_text()

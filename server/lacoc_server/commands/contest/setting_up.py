@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from lacoc_arenas import arena as arenas
+from lacoc_robots.library import find_robot
 from lacoc_robots.limits import Limits
 from lacoc_server.contest.kept.plans import doubts, not_for_courts, open_stage, plans
 from lacoc_server.contest.league.facts import Planned
@@ -18,7 +19,7 @@ from lacoc_shared.keyspace import KeySpace
 from lacoc_shared.mistakes import Gathered, UserError
 from lacoc_shared.network.address import DEFAULT_PORT
 from lacoc_shared.network.public import PublicAddress
-from lacoc_shared.words import say
+from lacoc_shared.words import Phrase, say
 
 FILE = Path("contest.toml")
 FileToRead = Annotated[
@@ -207,11 +208,13 @@ def _text(
 
 
 def check(file: FileToRead = FILE) -> None:
-    """Check a contest file, its stages, its arenas' settings and its limits for robots."""
+    """Check a contest file, its stages, its arenas' settings, its robot and limits for robots."""
     contest = contests.load(file)
     found = Gathered()
     with found:
         Limits.of(contest.limits)
+    with found:
+        find_robot(contest.robot)
     for name, court in contest.courts.items():
         with found:
             _check_court(name, court)
@@ -222,6 +225,13 @@ def check(file: FileToRead = FILE) -> None:
     with found:
         friendly = open_stage(contest, file)
     found.check()
+    of_facts: list[Phrase] = []
+    if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
+        from lacoc_server.contest.acts import (
+            organiser,
+        )  # needs packages that the base install lacks
+
+        of_facts = organiser.doubts_of(file)
     courts = [f"{name} ({court.arena})" for name, court in contest.courts.items()]
     screen.show(say("contest.right", file=str(file), courts=courts))
     for doubt in filter(None, (*doubts(stages), not_for_courts([*stages, friendly]))):
@@ -235,13 +245,8 @@ def check(file: FileToRead = FILE) -> None:
 
         for doubt in certificate_doubts(contest.public, close, datetime.now(UTC)):
             screen.warn(doubt)
-    if contests.facts_path(file).exists():  # else no team has entered, and reading makes no file
-        from lacoc_server.contest.acts import (
-            organiser,
-        )  # needs packages that the base install lacks
-
-        for doubt in organiser.doubts_of(file):
-            screen.warn(doubt)
+    for doubt in of_facts:
+        screen.warn(doubt)
 
 
 def certificate(

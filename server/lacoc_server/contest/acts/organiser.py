@@ -12,7 +12,7 @@ from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, gather_entry, weigh
 from lacoc_server.contest.kept.folder import ContestFolder
-from lacoc_server.contest.kept.plans import game, note_plans
+from lacoc_server.contest.kept.plans import check_drawn, game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league import sheet as sheets
@@ -361,10 +361,16 @@ def doubts(where: ContestFolder, contest: Contest) -> list[Phrase]:
 
 
 def doubts_of(file: Path) -> list[Phrase]:
-    """Return the warnings of `doubts` for the contest file and the facts beside it."""
+    """Return the warnings of `doubts` for the contest file and the facts beside it.
+
+    Raises:
+        UserError: if the file has changed a stage that is drawn already.
+    """
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
-        return doubts(where, compute(store.facts(), FORMATS))
+        contest = compute(store.facts(), FORMATS)
+    check_drawn(contest, where.plans)
+    return doubts(where, contest)
 
 
 def check_teams(where: ContestFolder, contest: Contest) -> None:

@@ -11,7 +11,7 @@ import msgspec
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
-from lacoc_server.contest.league.contest import compute
+from lacoc_server.contest.league.contest import Contest, compute
 from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSettings, Unplanned, new
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
@@ -206,6 +206,7 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
 
     def decision(facts: tuple[AnyFact, ...]) -> Iterator[AnyFact]:
         contest = compute(facts, FORMATS)
+        check_drawn(contest, wanted)
         drawn = {view.name: view.plan for view in contest.stages}
         planned = [plan.stage for plan in contest.planned]
         names = [plan.stage for plan in wanted if plan.stage not in drawn]
@@ -217,13 +218,38 @@ def note_plans(store: FactStore, wanted: list[Planned]) -> None:
             yield new(Unplanned, stage=stage)
         known = {**{plan.stage: plan for plan in contest.planned[:same]}, **drawn}
         for plan in wanted:
-            if plan.stage in known and _content(known[plan.stage]) == _content(plan):
-                continue
-            if plan.stage in drawn:
-                raise UserError(say("contest.stage-began", stage=plan.stage))
-            yield plan
+            if plan.stage not in known or _content(known[plan.stage]) != _content(plan):
+                yield plan
 
     store.decide(decision)
+
+
+def check_drawn(contest: Contest, wanted: Iterable[Planned]) -> None:
+    """Check that the plans of all drawn stages are still as they were at the draw.
+
+    Args:
+        contest: the contest.
+        wanted: the plans of the contest file.
+
+    Raises:
+        UserError: at the first plan that has changed; the message names the first entry of the
+            contest file that differs.
+    """
+    drawn = {view.name: view.plan for view in contest.stages}
+    for plan in wanted:
+        before, now = (_entries(_content(one)) for one in (drawn.get(plan.stage, plan), plan))
+        for entry, value in now.items():
+            if value != before[entry]:
+                raise UserError(say("contest.stage-began", stage=plan.stage, entry=entry))
+
+
+def _entries(plan: Planned) -> dict[str, Any]:
+    """Return what a plan has taken from the contest file, by the place of the entry or table."""
+    table = msgspec.structs.asdict(plan)
+    limits, of_arena = table.pop("limits"), table.pop("arena_settings")
+    table = {**table, **msgspec.structs.asdict(plan.settings), "settings": of_arena}
+    stage = {f"stage.{plan.stage}.{entry}": value for entry, value in table.items()}
+    return {**stage, "limits": limits}
 
 
 def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> Planned:
