@@ -51,7 +51,8 @@ def film_command(
         Path,
         typer.Argument(
             metavar="RECORD",
-            help="The .mcap file of a match, any of its segments, or the folder of a contest.",
+            help="The .mcap file of a match, any of its segments, or a contest: its published "
+            "folder, its contest file, or that file's folder.",
         ),
     ],
     out: Annotated[Path, typer.Argument(metavar="OUT", help="The film: a name with .mp4.")],
@@ -114,7 +115,7 @@ def film_command(
     from lacoc_client.film import contest, film
     from lacoc_client.film import moments as ranked
 
-    if record.is_dir():
+    if _is_contest(record):
         parts = [film.part(path, film.REEL, opening=True) for path in contest.records(record)]
         look = replace(look, overlay=True)
     else:
@@ -148,6 +149,11 @@ def film_command(
         for part, path in zip(parts, _stills(out, len(parts)), strict=True):
             film.still(part, path, look)
             screen.show(str(path))
+
+
+def _is_contest(record: Path) -> bool:
+    """Return whether the command's first argument is a contest, not a record."""
+    return record.is_dir() or record.suffix == ".toml"
 
 
 def _stills(out: Path, count: int) -> list[Path]:
@@ -184,7 +190,7 @@ def _check(record: Path, out: Path, highlights: bool, moments: Path | None) -> N
         raise UserError(say("command.folder-has-name", path=str(out)))
     if not out.parent.is_dir():
         raise UserError(say("film.no-folder", folder=str(out.parent)))
-    if record.is_dir() and (highlights or moments):
+    if _is_contest(record) and (highlights or moments):
         raise UserError(say("film.reel-only"))
     if moments is not None and not highlights:
         raise UserError(say("film.moments-alone"))

@@ -1,8 +1,10 @@
 """Finds the records of a contest, in the order of the contest's sheet."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from lacoc_client.web.gateway import contest_sheet
+from lacoc_shared.contest import file as contests
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
 
@@ -10,22 +12,27 @@ _FOLDERS = ("records", "recordings", ".")
 """Folders in which records may be: in a published folder, and beside a contest file."""
 
 
-def records(folder: Path) -> list[Path]:
+def records(contest: Path) -> list[Path]:
     """Return the records of a contest's games, except void ones, as paths in the sheet's order.
 
     Args:
-        folder: a published folder, or the folder of a contest file; it has `contest.json`.
+        contest: a contest file; or a published folder or that of a contest file, with
+            `contest.json`.
 
     Raises:
-        UserError: if it has no sheet, no game was played yet, or a record is missing.
+        UserError: if the contest file can't be read, there is no sheet, no game was played yet, or
+            a record is missing.
     """
-    path = folder / contest_sheet.NAME
+    if contest.is_dir():
+        folder, path = contest, contest / contest_sheet.NAME
+        places = [folder / name for name in _FOLDERS]
+    else:
+        folder, path = contest.parent, contests.sheet_path(contest)
+        places = [contests.load(contest).recordings]
     try:
         sheet = contest_sheet.read(path)
     except FileNotFoundError:
-        raise UserError(
-            say("film.no-contest", folder=str(folder), sheet=contest_sheet.NAME)
-        ) from None
+        raise UserError(say("film.no-contest", folder=str(folder), sheet=path.name)) from None
     except OSError as error:
         why = error.strerror or str(error)
         raise UserError(say("film.cannot-read", file=str(path), why=why)) from None
@@ -35,14 +42,15 @@ def records(folder: Path) -> list[Path]:
     names = [game.record for game in sheet.games if game.record and game.outcome != "void"]
     if not names:
         raise UserError(say("film.no-games", folder=str(folder)))
-    return [_found(folder, name) for name in names]
+    return [_found(places, name) for name in names]
 
 
-def _found(folder: Path, name: str) -> Path:
+def _found(places: Sequence[Path], name: str) -> Path:
     # The sheet may come from anywhere: a record's name leads to no other folder.
     own = Path(name).name
-    for place in _FOLDERS:
-        path = folder / place / own
+    for place in places:
+        path = place / own
         if path.is_file():
             return path
-    raise UserError(say("film.no-record", folder=str(folder), name=printable(own, 120)))
+    folders = [str(place) for place in places]
+    raise UserError(say("film.no-record", folders=folders, name=printable(own, 120)))
