@@ -89,6 +89,20 @@ def test_files_of_teams_come_with_the_end_of_entries(tmp_path: Path) -> None:
     assert len(entries) == len({*BOTS.values()})
 
 
+def test_a_folder_has_one_contest(tmp_path: Path) -> None:
+    """A contest, or what was rehearsed on a copy of it, is not mixed with another one."""
+    file = small_contest.enter(tmp_path / "cup", bots={"Ann": "planner", "Bob": "planner"})
+    shutil.copytree(file.parent, tmp_path / "rehearsal")
+    folder = tmp_path / "out"
+    organiser.publish_to(file, folder)
+    organiser.enter(tmp_path / "rehearsal" / file.name, "Cy", None, "planner", "")
+    organiser.publish_to(tmp_path / "rehearsal" / file.name, folder)
+    before = files(folder)
+    with pytest.raises(UserError, match=r"out has another contest"):
+        organiser.publish_to(file, folder)
+    assert files(folder) == before
+
+
 def test_names_of_teams_are_no_paths(tmp_path: Path) -> None:
     """Strange team names stay as they are, and nothing is written outside the published folder."""
     file = small_contest.enter(

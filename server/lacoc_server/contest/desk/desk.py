@@ -172,13 +172,12 @@ class Desk:
             UserError: if the contest still holds records back, a record or an entry is missing, or
                 something can't be written.
         """
-        with self._one:
-            facts, contest = self._book.facts, self._book.contest
-        replays = self._book.where.contest.replays
-        if replays != "at-once" and not contest.over:  # everybody can read the folder
-            raise UserError(say("desk.holds-back", replays=replays))
-        folder = self._book.where.published
+        replays, folder = self._book.where.contest.replays, self._book.where.published
         with self._publishing:
+            with self._one:
+                facts, contest = self._book.facts, self._book.contest
+            if replays != "at-once" and not contest.over:  # everybody can read the folder
+                raise UserError(say("desk.holds-back", replays=replays))
             publish(self._book.where, facts, folder)
         return Said(said=(say("desk.published", folder=str(folder)),))
 

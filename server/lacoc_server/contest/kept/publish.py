@@ -16,7 +16,7 @@ from lacoc_shared.command import plugins, regular
 from lacoc_shared.command.csv_text import csv_text
 from lacoc_shared.command.replacing import replace, write
 from lacoc_shared.contest import file as contests
-from lacoc_shared.mistakes import UserError
+from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.record import pack
 from lacoc_shared.record.files import segment_paths
 from lacoc_shared.words import say
@@ -31,9 +31,10 @@ _SITES = "lacoc.site"
 def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
     """Write a contest as a folder: facts, sheet, tables, entries, records and pages.
 
-    The folder can be written again while the contest goes on. Each file is replaced in one step,
-    the sheet as the last one. The files of teams are left out until entries are closed. Records are
-    written whatever the contest file says about replays, and the sheet names them.
+    The folder can be written again while the contest goes on, but not by another contest. Each file
+    is replaced in one step, the sheet as the last one. The files of teams are left out until
+    entries are closed. Records are written whatever the contest file says about replays, and the
+    sheet names them.
 
     Args:
         folder: the contest.
@@ -41,8 +42,12 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
         out: the folder to write.
 
     Raises:
-        UserError: if a record or an entry is missing or has changed, or something can't be written.
+        UserError: if the folder has another contest, a record or an entry is missing or has
+            changed, or something can't be written.
     """
+    earlier = _facts_in(out)
+    if earlier != tuple(facts[: len(earlier)]):
+        raise UserError(say("contest.other-published", folder=text_of(out)))
     contest = compute(facts, FORMATS)
     sheet = sheets.sheet(folder.contest.name, contest)
     try:
@@ -63,6 +68,14 @@ def publish(folder: ContestFolder, facts: Sequence[AnyFact], out: Path) -> None:
         why = error.strerror or str(error)
         path = str(error.filename or out)
         raise UserError(say("command.cannot-write", path=path, why=why)) from None
+
+
+def _facts_in(folder: Path) -> tuple[AnyFact, ...]:
+    """Return the facts in a published folder; none, if there are none that can be read."""
+    try:
+        return league_facts.decode((folder / FACTS).read_bytes())
+    except (OSError, UserError):  # publishing again mends a damaged folder
+        return ()
 
 
 def tables(sheet: ContestSheet) -> dict[str, bytes]:
