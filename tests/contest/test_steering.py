@@ -9,7 +9,7 @@ import pytest
 from msgspec.structs import replace
 from office_room import CODE, KEY, NOW_MS, Room, said, sample
 
-from lacoc_server.contest.acts import steering
+from lacoc_server.contest.acts import deciding, organiser, steering
 from lacoc_server.contest.kept.plans import note_plans
 from lacoc_server.contest.league import facts as league_facts
 from lacoc_server.contest.league.contest import compute
@@ -20,10 +20,12 @@ from lacoc_server.contest.league.facts import (
     Entered,
     FilesChanged,
     Moved,
+    NoShow,
     Played,
     Substituted,
     Undrawn,
     Withdrawn,
+    new,
 )
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.sheet import sheet
@@ -118,6 +120,28 @@ def test_the_timetable_has_every_match(room: Room) -> None:
     assert final.at_ms >= last + 600_000
     later = {one.pairing: one for one in sheet("", compute(room.facts, FORMATS)).later}
     assert later["finals:w1.1"].fixture.code == "fixture.final"
+
+
+@pytest.mark.parametrize("typed", ["Café  Ants", "Cafe\u0301 Ants", " Café\u3000Ants "])
+def test_a_team_is_known_as_it_is_typed_at_its_entry(tmp_path: Path, typed: str) -> None:
+    """Spaces and the way of writing an accent do not matter, whatever is decided about a team."""
+    room = Room(tmp_path)
+    room.enter(typed, "Bees")
+    room.ask(CloseEntries(secret=KEY))
+    room.draw()
+    room.enter("Crabs", reason="late")
+    contest, team = compute(room.facts, FORMATS), "Café Ants"
+    no_show = deciding.WantedDecision("no-show", "cup:a1.1", 1, typed, None, "ill")
+    assert deciding.decision(contest, no_show) == new(
+        NoShow, pairing="cup:a1.1", team=team, opponent="Bees", reason="ill"
+    )
+    wanted = new(Substituted, team=team, substitute="Crabs", reason="ill")
+    assert steering.substituting(contest, typed, "Crabs", "ill") == wanted
+    assert [*deciding.teams_named(contest, [f"Bees,{typed}"])] == ["Bees", team]
+    assert [*organiser.tokens(room.file, typed)] == [team]
+    left = organiser.take_out(room.file, typed, "ill", disqualified=False)
+    assert left == say("contest.left", team=team)
+    assert [one.name for one in compute(room.facts, FORMATS).teams if one.gone] == [team]
 
 
 def test_a_match_that_is_not_drawn_is_moved(room: Room) -> None:

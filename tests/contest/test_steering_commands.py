@@ -42,7 +42,7 @@ def file(tmp_path: Path) -> Path:
     """Give a contest of four teams whose entries are closed, and whose draw waits."""
     file = tmp_path / "contest.toml"
     file.write_text(_CONTEST)
-    for team in ("Ants", "Bees", "Crabs", "Dogs"):
+    for team in ("Ants", "Bees", "Crabs", "Dogs, Inc."):
         organiser.enter(file, team, None, "", "")
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
@@ -72,16 +72,15 @@ def test_a_day_by_commands(file: Path, lacoc: Run) -> None:
         assert says in told
 
     does("draw", "--lot", "4 2 6", "--yes", says="is drawn")
-    drawn = contest(file).stages[0].stage.entries
     refuses("undraw", says="This one can be taken back now: finals")
     does("undraw", "finals", "--reason", "a mistake", "--yes", says="stays undrawn until")
     refuses("undraw", "finals", "--reason", "again", "--yes", says="has not been drawn")
-    hand = ",".join(reversed(drawn))
+    hand = ("--order", "Dogs, Inc.", "--order", "Crabs,Bees, Ants")
     refuses("draw", "--order", "Ants,Bees", "--yes", says="exactly these teams")
-    refuses("draw", "--order", hand, "--yes", says="reason")
-    does("draw", "--order", hand, "--reason", "last year", "--by", "Aiko", "--yes", says="is drawn")
+    refuses("draw", *hand, "--yes", says="reason")
+    does("draw", *hand, "--reason", "last year", "--by", "Aiko", "--yes", says="is drawn")
     now = contest(file)
-    assert now.stages[0].stage.entries == tuple(reversed(drawn))
+    assert now.stages[0].stage.entries == ("Dogs, Inc.", "Crabs", "Bees", "Ants")
     assert [fact.by for fact in now.decisions if isinstance(fact, Drawn)] == ["", "Aiko"]
 
     does("move", "finals:w2.1", "--court", "north", says="Final is moved to court")

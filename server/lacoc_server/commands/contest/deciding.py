@@ -101,12 +101,13 @@ def draw(
         ),
     ] = "",
     order: Annotated[
-        str,
+        list[str] | None,
         typer.Option(
             metavar="TEAM,TEAM,...",
-            help="The teams in the order that you want, the best first; it needs a reason.",
+            help="The teams in the order that you want, the best first; it needs a reason. Can be "
+            "given more than once: a name with a comma needs an --order of its own.",
         ),
-    ] = "",
+    ] = None,
     reason: Reason = "",
     by: By = "",
 ) -> None:
@@ -133,7 +134,7 @@ def draw(
         if lot:
             shown = replace(shown, how="lot", lot=lot, entries=by_lot(shown.entries, lot))
         elif order:
-            teams = tuple(team.strip() for team in order.split(","))
+            teams = tuple(deciding.teams_named(now, order))
             if sorted(teams) != sorted(shown.entries):
                 raise UserError(say("contest.other-teams", teams=shown.entries))
             shown = replace(shown, how="hand", reason=reason, entries=teams)

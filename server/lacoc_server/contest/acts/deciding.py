@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 import msgspec
 
 from lacoc_server.contest.league.contest import Changes, Contest, changes, compute
+from lacoc_server.contest.league.draws import Team
 from lacoc_server.contest.league.facts import (
     AnyFact,
     Drawn,
@@ -29,6 +30,8 @@ from lacoc_server.contest.league.timetable.schedule import due, waits_for_organi
 from lacoc_server.contest.league.timetable.seeding import moved_apart
 from lacoc_server.contest.league.timetable.whereabouts import may_come
 from lacoc_server.contest.league.titles import title
+from lacoc_shared.contest.names import read_name
+from lacoc_shared.messages.desk import TEAM_NAME_MAX
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -231,11 +234,12 @@ def decision(contest: Contest, wanted: WantedDecision) -> AnyFact:
         raise UserError(say("decide.no-teams", pairing=wanted.pairing))
     about = {"pairing": wanted.pairing, "reason": wanted.reason}
     if wanted.kind == "no-show":
-        if wanted.team not in match.teams:
+        team = team_named(contest, wanted.team)
+        if team not in match.teams:
             teams = [first, second]
             raise UserError(say("decide.which-team", pairing=wanted.pairing, teams=teams))
-        opponent = second if wanted.team == first else first
-        return new(NoShow, team=wanted.team, opponent=opponent, **about)
+        opponent = second if team == first else first
+        return new(NoShow, team=team, opponent=opponent, **about)
     if wanted.kind == "void":
         return new(Voided, teams=(first, second), **about)
     if (
@@ -268,6 +272,38 @@ def match_of(contest: Contest, pairing: str) -> ContestMatch:
         known = [*matches][:20]
         raise UserError(say("decide.no-match", pairing=pairing, known=known or None))
     return matches[pairing]
+
+
+def team_of(contest: Contest, text: str) -> Team:
+    """Return the team that a text names.
+
+    Raises:
+        UserError: if no such team has entered.
+    """
+    teams = {team.name: team for team in contest.teams}
+    found = teams.get(team_named(contest, text))
+    if found is None:
+        raise UserError(say("contest.not-in", team=text, teams=[*teams] or None))
+    return found
+
+
+def team_named(contest: Contest, text: str) -> str:
+    """Return the name of the team that a text means: spaces and accents as `enter` reads them.
+
+    If there is no such team, return the text.
+    """
+    names = [team.name for team in contest.teams]
+    read = read_name(text, TEAM_NAME_MAX)
+    return read if read in names and text not in names else text
+
+
+def teams_named(contest: Contest, texts: Iterable[str]) -> Iterator[str]:
+    """Yield the teams that texts name; each text is the name of a team, or names with commas."""
+    names = [team.name for team in contest.teams]
+    for text in texts:
+        alone = team_named(contest, text) in names
+        for part in [text] if alone else text.split(","):
+            yield team_named(contest, part.strip())
 
 
 def _seats(match: ContestMatch, game: int) -> tuple[str, str]:

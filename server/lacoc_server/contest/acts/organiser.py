@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 
+from lacoc_server.contest.acts.deciding import team_of
 from lacoc_server.contest.headless.play import GameEngine, play_contest
 from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
@@ -166,6 +167,7 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str 
         UserError: if the team has not entered.
     """
     with FactStore(ContestFolder(file).facts, by) as store:
+        team = team_of(compute(store.facts(), FORMATS), team).name
         store.decide(
             lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
         )
@@ -179,12 +181,10 @@ def leaving(contest: Contest, team: str, reason: str, *, disqualified: bool) -> 
 
     `team`, `reason`, `disqualified` and the error are as in `take_out`.
     """
-    teams = {one.name: one for one in contest.teams}
-    if team not in teams:
-        raise UserError(say("contest.not-in", team=team, teams=[*teams] or None))
-    if disqualified and not teams[team].disqualified:
-        return [new(Disqualified, team=team, reason=reason)]
-    return [] if teams[team].gone else [new(Withdrawn, team=team, reason=reason)]
+    there = team_of(contest, team)
+    if disqualified and not there.disqualified:
+        return [new(Disqualified, team=there.name, reason=reason)]
+    return [] if there.gone else [new(Withdrawn, team=there.name, reason=reason)]
 
 
 def drawing(contest: Contest) -> Drawn:
@@ -244,16 +244,13 @@ def tokens(file: Path, team: str | None) -> dict[str, str]:
     """
     where = ContestFolder(file)
     with FactStore(where.facts) as store:
-        teams = compute(store.facts(), FORMATS).teams
-    names = [one.name for one in teams]
-    if team is not None and team not in names:
-        raise UserError(say("contest.not-in", team=team, teams=names or None))
-    people = [one.name for one in teams if not (one.gone or one.bot)]
-    if team is None and not people:
+        contest = compute(store.facts(), FORMATS)
+    wanted = [one for one in contest.teams if not (one.gone or one.bot)]
+    if team is not None:
+        wanted = [team_of(contest, team)]
+    if not wanted:
         raise UserError(say("contest.no-people"))
-    return {
-        name: where.contest.secrets.team(name) for name in ([team] if team is not None else people)
-    }
+    return {one.name: where.contest.secrets.team(one.name) for one in wanted}
 
 
 def play_headless(

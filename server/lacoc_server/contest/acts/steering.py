@@ -6,7 +6,7 @@ would change.
 
 from collections.abc import Collection
 
-from lacoc_server.contest.acts.deciding import match_of
+from lacoc_server.contest.acts.deciding import match_of, team_of
 from lacoc_server.contest.league.contest import Contest
 from lacoc_server.contest.league.facts import (
     Announced,
@@ -134,11 +134,9 @@ def substituting(contest: Contest, team: str, substitute: str, reason: str) -> S
         UserError: if a team is not in the contest, the substitute has a place of its own in each
             stage, there is no place to give up, or the reason is missing.
     """
-    teams = {one.name: one for one in contest.teams}
-    for name in (team, substitute):
-        if name not in teams:
-            raise UserError(say("contest.not-in", team=name, teams=[*teams] or None))
-    if teams[substitute].gone or substitute == team:
+    leaves, comes = team_of(contest, team), team_of(contest, substitute)
+    team, substitute = leaves.name, comes.name
+    if comes.gone or comes == leaves:
         raise UserError(say("league.no-substitute", team=substitute))
     if not [stage for stage in places(contest, team) if substitute not in stage]:
         raise UserError(say("day.no-place", team=team, substitute=substitute))
