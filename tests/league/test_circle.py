@@ -32,6 +32,11 @@ def test_everybody_plays_equally_often(players: int, rounds: int) -> None:
         assert max(Counter(player for pair in matches[at] for player in pair).values()) == 1
 
 
+def test_nobody_plays_alone() -> None:
+    """Fewer than two players have no match, in any round."""
+    assert pairings(0, 3) == pairings(1, 3) == []
+
+
 @given(PLAYERS, ROUNDS)
 def test_all_players_meet_before_any_meet_again(players: int, rounds: int) -> None:
     """All pairs of players meet equally often, or some pairs meet once more than the others."""

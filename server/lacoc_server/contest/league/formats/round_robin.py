@@ -85,9 +85,11 @@ def circle_round(players: int, number: int) -> Iterator[tuple[int, int]]:
     left seat if the round's number is even, else the right one.
 
     Args:
-        players: number of players.
+        players: number of players; fewer than two have no match.
         number: number of the round, from 0.
     """
+    if players < 2:
+        return
     circle = players - 1 + players % 2  # odd; after so many rounds everybody has met everybody
     lap, pivot = divmod(number, circle)
     if lap % 2:
