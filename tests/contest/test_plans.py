@@ -31,7 +31,14 @@ def folder(tmp_path: Path, stages: str) -> ContestFolder:
     [
         ('[stage.a]\nformat = "league"\n', r'There is no format "league"\. Choose double-knockout'),
         ("[stage.a]\n", r"entry \"format\" is missing"),
-        ('[stage."A b"]\nformat = "swiss"\n', r"stage"),
+        ('[stage."A b"]\nformat = "swiss"\n', r"\[stage.A b\]: a stage's name has 1 to 32 small"),
+        ('[stage."予選"]\nformat = "swiss"\n', r"\[stage.予選\]: a stage's name"),
+        (GROUPS + "title = 5\n", r"title is one text for both languages, or one for each"),
+        (GROUPS + "break_s = inf\n", r"groups.*break_s: expected a number of at most"),
+        (
+            '[stage.a]\nformat = "single-knockout"\nfinal_break_s = inf\n',
+            r"stage .a.*final_break_s: expected a number of at most",
+        ),
         (GROUPS + "games = 0\n", r"groups.*games: .*at least 1"),
         (
             GROUPS + 'games = "two"\n',

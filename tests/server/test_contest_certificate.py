@@ -52,6 +52,14 @@ def test_one_command_encrypts_a_contest(file: Path) -> None:
     assert "PRIVATE" not in access.authority
 
 
+def test_a_certificate_must_outlast_the_entries(file: Path) -> None:
+    """`check` says when it ends, also if entries close in the last year that there is."""
+    run("certificate", str(file))
+    end = "entries_close = 9999-12-31T23:59:59Z"
+    file.write_text(file.read_text().replace("[contest]", f"[contest]\n{end}", 1))
+    assert "The certificate ends on" in run("check", str(file))
+
+
 def test_the_hosts_of_the_contest_file_are_named_too(file: Path) -> None:
     """The certificate also names the pages, the courts, and the machines of courts elsewhere."""
     text = file.read_text().replace("[contest]", '[contest]\npages = "https://pages.example"')

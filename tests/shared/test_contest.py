@@ -116,6 +116,12 @@ def test_links_are_made_equal_where_the_court_says_so(file: Path) -> None:
         ('arena = "othello"', 'arena = "a\\u0000/b"', "is not a path"),
         ('robot = "robots/own.toml"', 'robot = "~nobody-here/b"', "is not a path"),
         ('recordings = "records"', 'recordings = "a\\u0000b"', r"contest\.recordings"),
+        (
+            'recordings = "records"',
+            'recordings = "~nobody-here/b"',
+            "~nobody-here/b. is not a path",
+        ),
+        ("[contest]", '[contest]\nauthority = "~nobody-here/b"', "~nobody-here/b. is not a path"),
         ("legs_max = 6", "legs_max = 1" + "0" * 5000, "digits"),
         ("legs_max = 6", "legs_max = " + "[" * 2000, "too deep"),
         ("duration_s = 60.0", "duration_s = 0x" + "f" * 40, "many digits"),
@@ -192,6 +198,14 @@ def test_a_wrong_time_is_told_with_an_example(file: Path, time: str) -> None:
         f"Contest file {file}, [contest.entries_close]: expected a time such as "
         f"2026-11-25T09:00:00+09:00, without quotes, found {time}."
     )
+
+
+@pytest.mark.parametrize("time", ["9999-12-31T23:59:59-09:00", "0001-01-01T00:00:00+09:00"])
+def test_a_time_that_is_in_no_calendar_is_wrong(file: Path, time: str) -> None:
+    """In UTC it would be in the year 10000 or 0."""
+    file.write_text(GOOD.replace("[contest]", f"[contest]\nentries_close = {time}"))
+    with pytest.raises(UserError, match=rf"expected a time such as .* found {time[:10]}"):
+        contests.load(file)
 
 
 @pytest.mark.parametrize("time", ["2026-11-25T09:00:00+09:00", '"2026-11-25T09:00:00+09:00"'])

@@ -198,9 +198,29 @@ def beside(folder: Path, name: str) -> str:
     """
     is_path = "/" in name or "." in name or "\\" in name
     try:
-        return str((folder / Path(name).expanduser()).resolve()) if is_path else name
-    except (ValueError, RuntimeError, OSError):  # a NUL, an unknown user, a loop of links
-        raise UserError(say("contest.no-path", path=name[:80])) from None
+        return str(in_folder(folder, name).resolve()) if is_path else name
+    except (ValueError, RuntimeError, OSError):  # a NUL, a loop of links
+        raise _no_path(name) from None
+
+
+def in_folder(folder: Path, name: str) -> Path:
+    """Return the full path for a path in the contest file; links in it stay links.
+
+    Args:
+        folder: folder of the contest file.
+        name: the path; "~" is a user's own folder.
+
+    Raises:
+        UserError: if there is no such user.
+    """
+    try:
+        return folder / Path(name).expanduser()
+    except RuntimeError:
+        raise _no_path(name) from None
+
+
+def _no_path(name: str) -> UserError:
+    return UserError(say("contest.no-path", path=name[:80]))
 
 
 def _any_host(address: str) -> str:

@@ -5,7 +5,7 @@ An organiser writes it once ('lacoc contest init'). Courts, office and pages are
 
 import math
 import re
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +17,7 @@ from lacoc_shared.contest.courts import (
     Standby,
     beside,
     check_ports,
+    in_folder,
     read_court,
     read_standby,
     wrong_in,
@@ -265,6 +266,9 @@ def _contest(table: dict[str, Any], path: Path) -> ContestFile:
     public, robot = PublicAddress(), general.robot
     with found:
         public = _public(general, folder)
+    recordings = folder
+    with found:
+        recordings = in_folder(folder, general.recordings)
     with found:
         robot = beside(folder, general.robot)
     courts = {}
@@ -285,7 +289,7 @@ def _contest(table: dict[str, Any], path: Path) -> ContestFile:
     check_ports(courts, standby)
     return ContestFile(
         name=general.name,
-        recordings=folder / Path(general.recordings).expanduser(),
+        recordings=recordings,
         robot=robot,
         limits=limits,
         health=health,
@@ -302,11 +306,11 @@ def _contest(table: dict[str, Any], path: Path) -> ContestFile:
 
 
 def _public(general: _General, folder: Path) -> PublicAddress:
-    certificate, private_key, authority = (
-        None if name is None else folder / Path(name).expanduser()
-        for name in (general.certificate, general.private_key, general.authority)
-    )
     try:
+        certificate, private_key, authority = (
+            None if name is None else in_folder(folder, name)
+            for name in (general.certificate, general.private_key, general.authority)
+        )
         return PublicAddress.of(general.pages, certificate, private_key, general.proxies, authority)
     except UserError as error:
         raise wrong_in("contest", error) from None
@@ -316,8 +320,11 @@ def _check_time(entries: dict[str, Any]) -> None:
     """Check the time when entries close, in the table [contest]; remove it if it is wrong."""
     close = entries.get("entries_close")
     try:
-        msgspec.convert(close, datetime | None)
-    except msgspec.ValidationError:
+        time = msgspec.convert(close, datetime | None)
+        if time is not None:
+            time.astimezone(UTC)
+    except (msgspec.ValidationError, ValueError, OverflowError, OSError):
+        # No time, or one that is in no calendar in another time zone.
         del entries["entries_close"]
         found = f'"{close}"' if isinstance(close, str) else str(close)
         raise UserError(_not_a_time(found)) from None

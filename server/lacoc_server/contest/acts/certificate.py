@@ -234,8 +234,8 @@ def doubts(
     assert public.certificate is not None
     found = _read(public.certificate)
     end = found.not_valid_after_utc
-    begins = now if entries_close is None else max(now, entries_close.astimezone())
-    if end < begins + _SOON:
+    begins = now if entries_close is None else max(now, entries_close.astimezone(UTC))
+    if end - _SOON < begins:
         yield say("contest.certificate-ends", day=str(end.date()))
     names = _names(found)
     if public.host and not any(_is_of(name, public.host) for name in names):

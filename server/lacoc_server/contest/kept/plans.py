@@ -1,10 +1,11 @@
 """The stages of a contest, as its contest file plans them."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
-from typing import Any, get_args
+from typing import Annotated, Any, get_args
 
 import msgspec
 
@@ -12,7 +13,15 @@ from lacoc_arenas import arena as arenas
 from lacoc_arenas.arena import Arena
 from lacoc_server.contest.kept.store import FactStore
 from lacoc_server.contest.league.contest import Contest, compute
-from lacoc_server.contest.league.facts import AnyFact, Draw, Planned, StageSettings, Unplanned, new
+from lacoc_server.contest.league.facts import (
+    STAGE_NAME,
+    AnyFact,
+    Draw,
+    Planned,
+    StageSettings,
+    Unplanned,
+    new,
+)
 from lacoc_server.contest.league.formats.format import Stage
 from lacoc_server.contest.league.formats.installed import FORMATS
 from lacoc_server.contest.league.standings import TIE_BREAKS
@@ -31,21 +40,26 @@ _TEAMS_FOR_THIRD = 4
 semi-final."""
 
 
+_Break = Annotated[float, msgspec.Meta(ge=0, le=31_536_000)]
+"""Length of a break [s]: at most a year."""
+
+
 class _StageEntries(msgspec.Struct, frozen=True, kw_only=True):
     """Entries of a stage's table in the contest file that are not in `StageSettings`."""
 
     format: str
     after: str = ""
-    title: str | dict[str, str] = ""
+    title: Any = ""
+    """One text, or one for each language."""
     draw: str = _AT_ONCE
     teams: int = 0
     arena: str = _USUAL_ARENA
     settings: dict[str, Any] = {}
     """Entries that replace those of the arena file."""
     apart: bool = False
-    break_s: float = 0.0
+    break_s: _Break = 0.0
     final_court: str = ""
-    final_break_s: float = 0.0
+    final_break_s: _Break = 0.0
 
 
 OPEN = "open"
@@ -145,6 +159,8 @@ def _read(
         UserError: at the first wrong setting.
     """
     try:
+        if not re.fullmatch(STAGE_NAME, name):
+            raise UserError(say("contest.stage-name"))
         plan = _plan(name, table, contest.limits)
         _check(plan, before, [*contest.courts])
         game(plan, folder)
@@ -270,7 +286,7 @@ def _plan(name: str, table: Mapping[str, Any], limits: Mapping[str, float]) -> P
     title = stage.title
     if isinstance(title, str):
         title = dict.fromkeys(LANGUAGES, title) if title else {}
-    elif {*title} != {*LANGUAGES}:
+    elif not isinstance(title, dict) or {*title} != {*LANGUAGES}:
         raise UserError(say("contest.stage-languages"))
     plan = new(
         Planned,

@@ -124,10 +124,14 @@ class StageSettings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=Tru
     """Further settings, which only formats of other packages read."""
 
 
+STAGE_NAME = "^[a-z0-9][a-z0-9-]{0,31}$"
+"""Pattern of a stage's name."""
+
+
 class Planned(Fact, frozen=True, kw_only=True, tag="planned"):
     """The plan of a stage: its format and settings. The newest plan before the draw counts."""
 
-    stage: Annotated[str, msgspec.Meta(pattern="^[a-z0-9][a-z0-9-]{0,31}$")]
+    stage: Annotated[str, msgspec.Meta(pattern=STAGE_NAME)]
     format: Name
     settings: StageSettings = StageSettings()
     after: str = ""
