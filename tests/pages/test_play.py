@@ -235,13 +235,16 @@ def test_a_folder_is_not_passed_over_in_silence(venue: Venue, sit: Sit, tmp_path
 
 @pytest.mark.long
 def test_a_file_dropped_on_a_seated_page(venue: Venue, sit: Sit, tmp_path: Path) -> None:
-    """A file that is dropped on the page can be used before a match, but not during it."""
+    """A file dropped on the page can be used or put away before a match, but not during it."""
     page = seated(venue, sit, "--seconds", "120")
     mine = tmp_path / "mine.toml"
     mine.write_text("name = 'My robot'")
     drag_in(page.page, mine)
     page.sees("dialog .files li:has-text('Robot')", "mine.toml")
-    page.page.click("[aria-label='Remove mine.toml']")
+    page.press("Escape")
+    page.misses("dialog")
+    page.page.click("text=Change files")
+    page.sees("dialog .files li:has-text('Robot')", "the contest's")
     page.press("Escape")
     page.misses("dialog")
     other = playing(venue, page)

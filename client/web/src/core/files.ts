@@ -19,12 +19,14 @@ interface Kept {
   base64: string;
 }
 
+type KeptFiles = Partial<Record<Slot, Kept>>;
+
 /**
  * Kept as text: a reload must join with the very same bytes, or the seat is not ready any more.
  * Kept where the wish for the seat is: another tab may be the other team's, and who sits at this
  * computer next has files of their own.
  */
-const kept = remembered<Partial<Record<Slot, Kept>>>("files", {}, tab);
+const kept = remembered<KeptFiles>("files", {}, tab);
 
 /** The sample's keys (Fig. 4-2): stand, turn left, forward, turn right. */
 export const SAMPLE_SEQUENCES: readonly string[] = ["0", "8765", "1234", "5678"];
@@ -32,9 +34,37 @@ export const SAMPLE_SEQUENCES: readonly string[] = ["0", "8765", "1234", "5678"]
 /** Level B of postures that come alone: for each key from 0 on the digits of its postures. */
 export const sequences = remembered<readonly string[]>("sequences", SAMPLE_SEQUENCES, tab);
 
+/** What joins send while files and sequences are being changed; null: what is chosen. */
+const inUse = remembered<{ files: KeptFiles; sequences: readonly string[] } | null>(
+  "filesInUse",
+  null,
+  tab,
+);
+
+/** Begin a change of files and sequences: joins send those of now until `applyChange`. */
+export function beginChange(): void {
+  inUse.value = { files: kept.peek(), sequences: sequences.peek() };
+}
+
+/** Let joins send what is chosen now. */
+export function applyChange(): void {
+  inUse.value = null;
+}
+
+/** Put back what was chosen when a change began, unless it is used or none began. */
+export function cancelChange(): void {
+  const before = inUse.peek();
+  if (!before) return;
+  kept.value = before.files;
+  sequences.value = before.sequences;
+  inUse.value = null;
+}
+
+cancelChange(); // the page was loaded again in the middle of a change
+
 /** The sequences as a join sends them; null: the sample's. */
 export function chosenSequences(): number[][] | null {
-  const keys = sequences.peek();
+  const keys = inUse.peek()?.sequences ?? sequences.peek();
   const isSample = keys.join() === SAMPLE_SEQUENCES.join();
   return isSample ? null : keys.map((digits) => [...digits].map(Number));
 }
@@ -53,8 +83,9 @@ export const chosenNames = computed<Record<Slot, string>>(() => ({
 
 /** The chosen files, as a join sends them. */
 export function chosenFiles(): Record<Slot, SentFile | null> {
+  const files = inUse.peek()?.files ?? kept.peek();
   const sent = (slot: Slot) => {
-    const file = kept.peek()[slot];
+    const file = files[slot];
     return file ? { name: file.name, data: fromBase64(file.base64) } : null;
   };
   return { robot: sent("robot"), postures: sent("postures"), locomotion: sent("locomotion") };

@@ -1,10 +1,10 @@
 /** The contestant's page; practice is the same page with a court of one's own. */
 
-import { useSignal, useSignalEffect } from "@preact/signals";
+import { effect, useSignal, useSignalEffect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { followColours } from "../../core/colours";
 import { Court } from "../../core/court";
-import { download } from "../../core/files";
+import { applyChange, beginChange, cancelChange, download } from "../../core/files";
 import type { Pressed } from "../../core/keys";
 import { phaseOf } from "../../core/match";
 import type { Phrase } from "../../core/phrase";
@@ -142,6 +142,16 @@ export function Cockpit({ alone }: { alone: boolean }) {
         document.querySelector<HTMLElement>(".rail button:not(:disabled), .foot button")?.focus(),
     },
     hasInputMethod,
+  );
+  // At once, before a dropped file is taken: an effect of the component would come too late.
+  useEffect(
+    () =>
+      effect(() => {
+        if (open.value !== "files") return;
+        beginChange();
+        return cancelChange;
+      }),
+    [],
   );
   useDrop(dragging, (files) => {
     const standing = player.standing.peek();
@@ -387,6 +397,7 @@ function Files({ court, player, alone, onClose }: DialogProps) {
             class="button strong"
             type="button"
             onClick={() => {
+              applyChange();
               onClose();
               player.rejoin();
             }}
