@@ -8,7 +8,7 @@ import pytest
 from bot_matches import bot_match
 from chromium import OpenPage
 from msgspec.structs import replace
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from show import Show, violations
 from venue import Venue
 
@@ -132,3 +132,30 @@ def test_a_page_with_the_key_goes_on_from_where_it_is(library: Venue, open_page:
     show = Show(page, library.url, f"/replay?file={MATCH}.mcap&t=3&q=low")
     show.sees(".position")
     show.misses("button[aria-label='What if, from here']")
+
+
+@pytest.mark.long
+def test_a_fork_that_nobody_waits_for_is_given_up(library: Venue, open_page: OpenPage) -> None:
+    """A closed dialog gives its fork up; at its beginning a match can be changed from beat 1 on."""
+    page = open_page(viewport={"width": 1366, "height": 768})
+    show = Show(page, library.url, f"/replay?q=low#key={library.key}", drawn=False)
+    show.sees(".recordings")
+    played: list[Route] = []
+
+    def play(route: Route) -> None:
+        if route.request.method == "POST":
+            played.append(route)  # it takes as long as this test
+        else:
+            route.fallback()
+
+    page.route("**/forks", play)
+    page.goto(f"{library.url}/replay?file={MATCH}.mcap&t=0&q=low")
+    page.get_by_role("button", name="What if, from here").click()
+    dialog = page.get_by_role("dialog")
+    dialog.locator("input[name=restart-left]").check()
+    with page.expect_request(lambda request: request.method == "POST"):
+        dialog.get_by_role("button", name="Play on").click()
+    assert played[0].request.post_data_json["beat"] == 1
+    with page.expect_event("requestfailed"):
+        dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_have_count(0)

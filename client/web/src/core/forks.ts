@@ -27,17 +27,26 @@ export async function botsFor(name: string, language: string): Promise<string[]>
   return found.bots;
 }
 
-/** Play a fork; returns the name of its recording. Rejects as `botsFor` does. */
-export async function fork(name: string, asked: ForkAsk, language: string): Promise<string> {
-  const made = (await ask(name, language, JSON.stringify(asked))) as { name: string };
+/**
+ * Play a fork; returns the name of its recording. Rejects as `botsFor` does.
+ *
+ * @param signal Aborted when nobody waits for the fork any more; then this rejects too.
+ */
+export async function fork(
+  name: string,
+  asked: ForkAsk,
+  language: string,
+  signal: AbortSignal,
+): Promise<string> {
+  const sent = { method: "POST", body: JSON.stringify(asked), signal };
+  const made = (await ask(name, language, sent)) as { name: string };
   return made.name;
 }
 
-async function ask(name: string, language: string, body?: string): Promise<unknown> {
+async function ask(name: string, language: string, sent: RequestInit = {}): Promise<unknown> {
   const response = await fetch(`recordings/${encodeURIComponent(name)}/forks`, {
-    method: body === undefined ? "GET" : "POST",
+    ...sent,
     headers: { "X-Lacoc-Key": anySecret() ?? "", "Accept-Language": language },
-    ...(body !== undefined && { body }),
   });
   if (!response.ok) throw new Error((await response.text()).trim());
   return response.json();

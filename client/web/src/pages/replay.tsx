@@ -1,6 +1,6 @@
 /** Recordings: from the server's folder or this machine, without any court. */
 
-import { effect, signal, useComputed } from "@preact/signals";
+import { effect, signal, useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { ownPage, runKey, setting } from "../core/address";
 import { followColours } from "../core/colours";
@@ -64,8 +64,6 @@ const camera = signal(cameraOfAddress());
 const fineness = qualityOfAddress() ?? quality;
 const panel = remembered("replay.panel", innerWidth >= WIDE_PX);
 const dragging = signal(false);
-/** The beat from which the open dialog goes on; null: it is closed. */
-const forking = signal<number | null>(null);
 /** Counts what was opened, so that an older one that arrives late is not shown. */
 let opening = 0;
 let unfollow = () => {};
@@ -208,11 +206,14 @@ function Loading({ name, part }: { name: string; part: number }) {
 
 function Show({ player, server }: { player: Player; server: string | null }) {
   const { recording } = player;
+  /** The beat from which the open dialog goes on; null: it is closed. */
+  const forking = useSignal<number | null>(null);
   useShortcuts(useMemo(() => shortcutsOf(player), [player]));
   useEffect(() => () => player.pause(), [player]);
   const other = player.beside.value;
   useEffect(() => (other ? effect(() => other.seek(recording.beat.value)) : undefined), [other]);
   const narrow = isNarrow.value;
+  const forkBeat = forking.value;
   const others = t(ownPage ? "home.contest" : "replay.others");
   const beside = panel.value && !narrow;
   const inset = narrow
@@ -274,7 +275,8 @@ function Show({ player, server }: { player: Player; server: string | null }) {
             label={t("fork.here")}
             onClick={() => {
               player.pause();
-              forking.value = Math.floor(recording.beat.value);
+              // All matches begin with beat 0: it can't differ.
+              forking.value = Math.max(1, Math.floor(recording.beat.value));
             }}
           />
         )}
@@ -302,16 +304,12 @@ function Show({ player, server }: { player: Player; server: string | null }) {
       )}
       <CornerSettings />
       <KeyHelp rows={() => rowsOf(player)} />
-      {server !== null && forking.value !== null && (
+      {server !== null && forkBeat !== null && (
         <ForkHere
           recording={recording}
           name={server}
-          beat={forking.value}
-          onMade={(name) => {
-            const beat = forking.value;
-            forking.value = null;
-            openServer(name, beat === null ? null : beat - SEEN_BEFORE_BEATS, true, true);
-          }}
+          beat={forkBeat}
+          onMade={(name) => openServer(name, forkBeat - SEEN_BEFORE_BEATS, true, true)}
           onClose={() => {
             forking.value = null;
           }}

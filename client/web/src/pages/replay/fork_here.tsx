@@ -1,7 +1,7 @@
 /** The dialog that goes on with a recording from the beat that is shown. */
 
 import { useSignal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useEffect, useMemo } from "preact/hooks";
 import { botsFor, fork } from "../../core/forks";
 import type { Recording } from "../../core/recording";
 import { canGo, goneEvents } from "../../core/rulings";
@@ -31,6 +31,8 @@ export function ForkHere({ recording, name, beat, onMade, onClose }: Props) {
   const event = useSignal<number | null>(null);
   const busy = useSignal(false);
   const refused = useSignal("");
+  const waiting = useMemo(() => new AbortController(), []);
+  useEffect(() => () => waiting.abort(), [waiting]);
   useEffect(() => {
     botsFor(name, language.peek()).then(
       (found) => {
@@ -54,7 +56,7 @@ export function ForkHere({ recording, name, beat, onMade, onClose }: Props) {
       players: [...players.value],
     };
     try {
-      onMade(await fork(name, asked, language.peek()));
+      onMade(await fork(name, asked, language.peek(), waiting.signal));
     } catch (error) {
       refused.value = error instanceof Error ? error.message : String(error);
     } finally {
