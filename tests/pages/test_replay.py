@@ -199,6 +199,11 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
     assert show.beat == last
     show.press("Home")
     assert show.beat == first
+    speed = show.page.get_by_title("Speed")
+    speed.click()
+    speed.select_option("0.5")
+    show.press("ArrowRight")  # a chooser that was clicked is done with
+    assert show.beat == first + 250
 
     def beats_a_second() -> float:
         then: list[float] = []
@@ -211,7 +216,7 @@ def test_play_seek_step_and_speed(library: Venue, record: Record, open_page: Ope
         show.until(enough, "time stands still")
         return (then[-1] - then[1]) / (then[-2] - then[0])
 
-    show.page.get_by_title("Speed").select_option("0.25")
+    speed.select_option("0.25")
     show.page.get_by_role("button", name="Play", exact=True).click()
     slow = beats_a_second()
     show.press(*["+"] * 5)
@@ -300,8 +305,10 @@ def test_the_servers_list_and_the_address(
     show.page.wait_for_url("**/replay?file=a-discs.mcap&t=4.40")
     other = Show(open_page(), library.url, "/replay?file=a-discs.mcap&t=4.40&q=low")
     other.until(lambda: other.view("drawnBeat") == 220, "another moment")
+    expect(show.page).to_have_title("planner – nearest")
     show.page.go_back()
     show.sees(".recordings")
+    expect(show.page).to_have_title("Replays – LACOC")
     missing = Player(open_page(), library, "?file=none.mcap", drawn=False)
     missing.sees(".trouble", "does not have the recording none.mcap")
     missing.sees(".recordings")

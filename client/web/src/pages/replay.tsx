@@ -71,6 +71,8 @@ let unfollow = () => {};
 effect(() => {
   const now = state.value;
   window.__replay = now.is === "open" ? now.player : undefined;
+  document.title =
+    now.is === "open" ? titleOf(now.player.recording) : `${t("replay.title")} – LACOC`;
 });
 
 /**
@@ -98,8 +100,6 @@ async function show(
     if (beat !== null) player.seek(beat);
     unfollow();
     unfollow = followColours(recording);
-    const [left, right] = recording.sheet.value?.seats.map((_, i) => seatTitle(recording, i)) ?? [];
-    document.title = right ? `${left} – ${right}` : `LACOC ${recording.record.header.match_id}`;
     state.value = { is: "open", player, server };
     if (server !== null) {
       const odds = await oddsOf(server, recording.record.header.match_id).catch(() => null);
@@ -133,9 +133,10 @@ async function showBeside(player: Player): Promise<void> {
   }
 }
 
-function seatTitle(recording: Recording, index: number): string {
-  const last = recording.record.sheets.at(-1)!.value;
-  return team(last, index);
+function titleOf({ record }: Recording): string {
+  const last = record.sheets.at(-1)!.value;
+  const [left, right] = last.seats.map((_, index) => team(last, index));
+  return right ? `${left} – ${right}` : `LACOC ${record.header.match_id}`;
 }
 
 function openServer(name: string, beat: number | null, push: boolean, beside = false): void {

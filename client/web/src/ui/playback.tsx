@@ -1,5 +1,6 @@
 /** The controls of what is played: play or pause, and the speed. */
 
+import { useRef } from "preact/hooks";
 import type { Playback } from "../core/playback";
 import { t } from "../i18n";
 import { Icon } from "./icons";
@@ -36,14 +37,24 @@ interface SpeedProps {
 }
 
 export function SpeedChooser({ playback, speeds }: SpeedProps) {
+  /** Whether the chooser was opened with a pointer: `:focus-visible` does not tell that. */
+  const isPointed = useRef(false);
   return (
     <label class="speed">
       <span class="hidden-text">{t("replay.speed")}</span>
       <select
         title={t("replay.speed")}
         value={playback.speed.value}
+        onPointerDown={() => {
+          isPointed.current = true;
+        }}
+        onKeyDown={() => {
+          isPointed.current = false;
+        }}
         onChange={(event) => {
           playback.speed.value = Number(event.currentTarget.value);
+          // Who chose with the mouse is done with it: the page's own keys count again.
+          if (isPointed.current) event.currentTarget.blur();
         }}
       >
         {speeds.map((speed) => (
