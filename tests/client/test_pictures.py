@@ -109,6 +109,16 @@ def test_a_frame_in_words(heading_deg: float) -> None:
 
 
 @pytest.mark.parametrize(
+    ("heading_deg", "shown"), [(90.0, "0°"), (0.0, "-90°"), (179.0, "89°"), (-90.0, "180°")]
+)
+def test_the_terminal_shows_the_yaw_of_pos_data(heading_deg: float, shown: str) -> None:
+    """The heading in the terminal is 0 where a robot looks along the field's +y (rules 2)."""
+    sheet = make_sheet("othello")
+    frame = make_frame(sheet, poses=pose(0.5, -0.25, heading_deg) * 2)
+    assert words.place(frame, sheet, "left") == f"  x 0.50 m  y -0.25 m  heading {shown}"
+
+
+@pytest.mark.parametrize(
     ("changes", "empty"),
     [({"poses": b""}, "poses"), ({"scene": bytes(8)}, "poses"), ({"markers": b""}, "markers")],
 )

@@ -42,7 +42,9 @@ def watch_command(
     json: Annotated[
         bool,
         typer.Option(
-            "--json", help="Print events and frames as JSON for a program, one on each line."
+            "--json",
+            help="Print events and frames as JSON for a program, one on each line. A robot's "
+            "heading is counter-clockwise from +x.",
         ),
     ] = False,
     hz: Annotated[

@@ -105,14 +105,18 @@ def standing_key(frame: Frame, sheet: Sheet, index: int) -> str:
 
 
 def place(frame: Frame, sheet: Sheet, seat: str) -> str:
-    """Return where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 91°"; "" if there is none."""
+    """Return where a seat's robot is: "  x 0.12 m  y 0.43 m  heading 1°"; "" if there is none.
+
+    The heading is the yaw in Pos-data.txt, as on pages: 0 where it looks along the field's +y.
+    """
     pose = poses(frame, sheet).get(seat)
     if pose is None:
         return ""
     # Adding zero turns a rounded -0.00 into 0.00.
     x_m, y_m = (round(pose[name], 2) + 0.0 for name in ("x_m", "y_m"))
-    deg = round(pose["heading_deg"]) + 0.0
-    return render(say("terminal.place", x_m=x_m, y_m=y_m, heading_deg=deg))
+    turned_deg = (round(pose["heading_deg"]) + 270) % 360
+    yaw_deg = turned_deg - 360 if turned_deg > 180 else turned_deg
+    return render(say("terminal.place", x_m=x_m, y_m=y_m, yaw_deg=yaw_deg))
 
 
 def seat_state(seat: SeatFrame) -> str:
