@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 from lacoc_shared import codec
 from lacoc_shared.command import cli
-from lacoc_shared.messages import Frame, Scene, Sheet
+from lacoc_shared.messages import Event, Frame, Scene, Sheet
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.commands import app
 from lacoc_shared.record.export import tables as export
@@ -149,6 +149,7 @@ def test_events_as_csv(record: Record) -> None:
         "number": "13",
         "beat": "13",
         "clock_s": "0.26",
+        "pos_data_s": "0.26",
         "kind": "flip",
         "seat": "left",
         "team": "Ants",
@@ -156,6 +157,32 @@ def test_events_as_csv(record: Record) -> None:
         "text": '"Ants" flip a disc, and more',
     }
     assert len(rows) == 4
+
+
+def test_events_are_found_in_pos_data(
+    tmp_path: Path, header: MakeHeader, sheet: Sheet, frame: MakeFrame
+) -> None:
+    """`pos_data_s` of an event is the `time_s` of its beat in Pos-data; "" outside of physics."""
+    phases = [Phase.LOBBY, Phase.READY, Phase.COUNTDOWN, Phase.PLAYING, Phase.HALTED, Phase.PLAYING]
+    writer = RecordWriter(tmp_path, header())
+    writer.sheet(0, sheet)
+    for beat, phase in enumerate(phases):
+        writer.event(_event(beat))
+        writer.frame(beat, codec.encode(frame(beat, phase)))
+    writer.close()
+    record = Record.read(writer.path)
+    rows = list(csv.DictReader(io.StringIO(export.events_csv(record).decode("utf-8-sig"))))
+    assert [row["pos_data_s"] for row in rows] == ["", "0.00", "", "0.02", "", "0.04"]
+    path = {float(row["time_s"]): row for row in _table(export.pos_data(record, "left").decode())}
+    for event in rows:
+        if event["pos_data_s"]:
+            there = path[float(event["pos_data_s"])]
+            assert float(there["x_m"]) == pytest.approx(0.01 * int(event["beat"]))
+
+
+def _event(beat: int) -> Event:
+    said = say("plain.text", text="something")
+    return Event(number=beat + 1, match=1, beat=beat, clock_ticks=beat, kind="phase", said=said)
 
 
 def test_events_as_csv_open_in_excel_in_their_language(record: Record) -> None:

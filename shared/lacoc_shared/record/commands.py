@@ -67,7 +67,13 @@ def export(
             help="Export the path of a seat's robot as Pos-data.txt; can be given more than once.",
         ),
     ] = None,
-    events: Annotated[bool, typer.Option("--events", help="Export all events as CSV.")] = False,
+    events: Annotated[
+        bool,
+        typer.Option(
+            "--events",
+            help="Export all events as CSV; pos_data_s is the time in the exported Pos-data.txt.",
+        ),
+    ] = False,
     result: Annotated[bool, typer.Option("--result", help="Export the result as JSON.")] = False,
     picture: Annotated[
         bool,

@@ -20,7 +20,7 @@ class PosData:
     def __init__(self, seat: int, joints: tuple[int, ...]) -> None:
         self.joints = joints
         self._seat = seat
-        self._rows: list[tuple[int, Array]] = []
+        self._rows: list[tuple[int, int, Array]] = []  # beat, tick, pose
         self._last: Frame | None = None
         self._tick = 0
 
@@ -42,14 +42,18 @@ class PosData:
         if self._rows and last is not None:
             # Frames may be lost in transit, but while physics runs every beat is a tick.
             self._tick += frame.beat - last.beat if last.phase in _PHYSICS else 1
-        self._rows.append((self._tick, pose))
+        self._rows.append((frame.beat, self._tick, pose))
+
+    def times_s(self) -> dict[int, float]:
+        """Return the time of each row, by the beat of its frame."""
+        return {beat: tick * BEAT_S for beat, tick, _ in self._rows}
 
     def text(self) -> str:
         """Return the file as a text: tab-separated, a header row, then a row for each tick."""
         names = [f"j{joint}_deg" for joint in range(self.joints[self._seat])]
         header = ["time_s", "x_m", "y_m", "z_m", "roll_deg", "pitch_deg", "yaw_deg", *names]
         lines = ["\t".join(header)]
-        for tick, pose in self._rows:
+        for _, tick, pose in self._rows:
             angles = [*euler_zyx(pose[3:ROOT_FLOATS]), *pose[ROOT_FLOATS:]]
             values = [tick * BEAT_S, *pose[:3], *np.degrees(angles)]
             lines.append("\t".join(f"{value:z.6f}" for value in values))

@@ -22,26 +22,21 @@ def pos_data(record: Record, seat: str) -> bytes:
     Raises:
         UserError: if there is no such seat, or no frame has poses of robots.
     """
-    index = seat_index(record, seat)
-    data: PosData | None = None
-    for beat, encoded in record.frames:
-        frame = codec.decode(encoded, Frame)
-        sheet = record.sheet_at(beat)
-        if sheet is None or not frame.poses:
-            continue
-        joints = joints_per_seat(sheet)
-        if data is None or data.joints != joints:  # a team came back with another robot
-            data = PosData(index, joints)
-        data.add(frame)
+    data = _path(record, seat_index(record, seat))
     if data is None:
         raise UserError(say("export.no-path", match=record.header.match_id))
     return data.text().encode()
 
 
 def events_csv(record: Record) -> bytes:
-    """Make a table of all events with one header row; the texts are in the process's language."""
+    """Make a table of all events with one header row; the texts are in the process's language.
+
+    `pos_data_s` is the `time_s` of the row of Pos-data of the same beat; "" if there is none.
+    """
+    path = _path(record, 0)  # physics runs for all robots at once
+    times_s = path.times_s() if path else {}
     rows: list[tuple[object, ...]] = [
-        ("number", "beat", "clock_s", "kind", "seat", "team", "code", "text")
+        ("number", "beat", "clock_s", "pos_data_s", "kind", "seat", "team", "code", "text")
     ]
     for event in record.events:
         sheet = record.sheet_at(event.beat)
@@ -51,6 +46,7 @@ def events_csv(record: Record) -> bytes:
                 event.number,
                 event.beat,
                 f"{event.clock_ticks / BEATS_PER_S:.2f}",
+                f"{times_s[event.beat]:.2f}" if event.beat in times_s else "",
                 event.kind,
                 seat.id if seat else "",
                 seat.team if seat else "",
@@ -97,3 +93,21 @@ def seat_index(record: Record, seat: str) -> int:
 def seat_ids(record: Record) -> list[str]:
     """Return the ids of a match's seats, in the arena's order."""
     return [seat.id for seat in record.sheets[-1][1].seats] if record.sheets else []
+
+
+def _path(record: Record, seat: int) -> PosData | None:
+    """Return the path of a seat's robot since no robot had another number of joints.
+
+    None: no frame has poses of robots.
+    """
+    data: PosData | None = None
+    for beat, encoded in record.frames:
+        frame = codec.decode(encoded, Frame)
+        sheet = record.sheet_at(beat)
+        if sheet is None or not frame.poses:
+            continue
+        joints = joints_per_seat(sheet)
+        if data is None or data.joints != joints:  # a team came back with another robot
+            data = PosData(seat, joints)
+        data.add(frame)
+    return data
