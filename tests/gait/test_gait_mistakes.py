@@ -370,10 +370,12 @@ def test_a_gait_for_another_robot_is_called_so(legs):
         b"\xef\xbb\xbf\xff",
         b"4\n\x81",
         b"\x00\x31\x00",
+        b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR\x00\x00\x00\x10",
+        b"\x89MCAP0\r\n\x01\x15\x00\x00\x00\x00\x00\x00\x00\x05\x00\x00\x00lacoc",
     ],
 )
 def test_bytes_that_are_no_text(data):
-    """Bytes that fit no encoding are refused, and the message names the first wrong byte."""
+    """Bytes that are no text in any encoding are refused; the message names the first such byte."""
     (mistake,) = refused(data)
     assert mistake.found.startswith("bytes that are not text (byte ")
     assert mistake.expected == "text in UTF-8, UTF-16 or Shift-JIS"

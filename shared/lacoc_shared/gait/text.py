@@ -131,11 +131,15 @@ def decoded(data: bytes, name: str, most_bytes: int = MAX_BYTES) -> Decoded:
 
 def _decoded(data: bytes, encoding: str, name: str) -> str:
     try:
-        return data.decode(encoding)
+        text = data.decode(encoding)
     except UnicodeDecodeError as error:
-        byte = f"0x{data[error.start]:02x}"
-        found = say("gait.no-text-byte", number=error.start + 1, byte=byte)
-        raise _refused(name, found, say("gait.encodings")) from None
+        start = error.start
+    else:
+        if "\0" not in text:
+            return text
+        start = len(text.partition("\0")[0].encode(encoding))  # pictures and records have NULs
+    found = say("gait.no-text-byte", number=start + 1, byte=f"0x{data[start]:02x}")
+    raise _refused(name, found, say("gait.encodings"))
 
 
 def line_cells(line: str) -> list[str]:

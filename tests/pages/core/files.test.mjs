@@ -42,3 +42,14 @@ test("joins send a change of the files only once it is applied", async () => {
   page.cancelChange(); // the dialog closes
   assert.deepEqual(now(page), ["other.txt", "other.txt", "1"]);
 });
+
+test("a robot file is known by its content too", async () => {
+  const { slotOf } = await loaded();
+  const slot = (name, text) => slotOf(name, new TextEncoder().encode(text));
+  for (const text of ["# My robot\n\n[body]\n", 'name = "Ant"\n', "[body]\r\nmass_kg = 1\r\n"]) {
+    assert.equal(slot("robot.toml.txt", text), "robot");
+  }
+  assert.equal(slot("Robot.TOML", ""), "robot");
+  assert.equal(slot("a.txt", "Num of Posture\t1\n1 Key\t0\n"), "postures");
+  assert.equal(slot("a.txt", "4\n1\n0\n"), "locomotion");
+});

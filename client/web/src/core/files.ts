@@ -135,6 +135,8 @@ export function slotOf(name: string, data: Uint8Array): Slot {
     .split(/\r?\n/)
     .map((line) => line.trim().replaceAll('"', ""))
     .find((line) => line);
+  // A robot file under another name (robot.toml.txt) begins with a remark, an entry or a table.
+  if (first !== undefined && /^(#|\w+ *=|\[)/.test(first)) return "robot";
   // LocoTra-data begins with the number of its keys alone (rules 2), in any digits.
   if (first !== undefined) return /^\p{Nd}+$/u.test(first) ? "locomotion" : "postures";
   return /tra/i.test(name) ? "locomotion" : "postures";
