@@ -9,6 +9,7 @@ from tests.campaigns.fuzz.leaps import at_random, changed, judge, search
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_no_robot_that_is_let_in_leaps() -> None:
     """Among 30 random robots and 5 variants of one, no accepted robot leaves its start place.
 

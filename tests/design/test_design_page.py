@@ -355,6 +355,7 @@ def test_a_wrong_start_is_told(tmp_path: Path, words: tuple[str, ...], said: str
     assert said in ended.stderr
 
 
+@pytest.mark.long
 def test_a_studio_elsewhere_may_come_later(tmp_path: Path) -> None:
     """With --connect a page is told why no studio is found; trials work once a studio starts."""
     address = f"tcp/127.0.0.1:{free_port()}"

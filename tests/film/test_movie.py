@@ -145,6 +145,7 @@ except UserError as error:
 """
 
 
+@pytest.mark.long
 def test_a_full_disk_is_told(tmp_path: Path) -> None:
     """When no more can be written, the error says why, and nothing is left."""
 

@@ -393,7 +393,7 @@ def test_pages_of_contestants_have_a_bound_too(venue: Venue) -> None:
     venue.page()
 
 
-@pytest.mark.slow(minutes=0.3)
+@pytest.mark.long(minutes=0.3)
 def test_a_token_that_is_shown_to_no_court_keeps_no_place(venue: Venue) -> None:
     """In a full hall a page with a token is let in, and goes if it does not show it in time."""
     venue.court()

@@ -175,6 +175,7 @@ def test_what_there_is_not_is_told_for_a_second(open_venue: Venue) -> None:
     assert [ask(open_venue, f"{one}/now.json")[0] for one in ("none", "court/none")] == [404, 404]
 
 
+@pytest.mark.long
 def test_a_cache_goes_on_without_the_gateway(venue: Venue, tmp_path: Path) -> None:
     """While the gateway is away, nginx answers with the pieces that it has, and says which."""
     (folder := tmp_path / "proxy").mkdir()

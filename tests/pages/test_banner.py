@@ -50,12 +50,9 @@ def test_every_page_says_why_it_waits(venue: Venue, open_page: OpenPage, path: s
     show.sees(WAITS[path], f"No program answers at tcp/127.0.0.1:{venue.court_port}.")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
-    ("locale", "full"),
-    [
-        ("en-GB", FULL),
-        pytest.param("ja-JP", "すでに上限の 1 ページが観戦中です。", marks=pytest.mark.long),
-    ],
+    ("locale", "full"), [("en-GB", FULL), ("ja-JP", "すでに上限の 1 ページが観戦中です。")]
 )
 def test_a_full_hall_is_said_and_not_stormed(
     venue: Venue, open_page: OpenPage, console: Any, locale: str, full: str

@@ -85,15 +85,8 @@ settings.match.countdown_s = 0.5
         yield Place(pages, opened["office"], links, inner)
 
 
-@pytest.mark.slow(minutes=0.4)
-@pytest.mark.parametrize(
-    "how",
-    [
-        "nginx",
-        pytest.param("caddy", marks=pytest.mark.long),
-        pytest.param("own", marks=pytest.mark.long),
-    ],
-)
+@pytest.mark.long(minutes=0.4)
+@pytest.mark.parametrize("how", ["nginx", "caddy", "own"])
 def test_a_contest_at_a_public_address(
     how: str, tmp_path: Path, built_pages: Path, open_page: OpenPage, console: Any
 ) -> None:

@@ -176,6 +176,7 @@ def test_a_team_that_plays_no_more_reads_why_and_is_not_alarmed(
     player.sees(".banner.calm", "Its court does not answer now.")
 
 
+@pytest.mark.long
 def test_a_seat_that_the_court_refuses_is_told_and_asked_for_again(venue: Venue, sit: Sit) -> None:
     """The card says why the team has no seat yet; the page goes on asking without a person."""
     there = Whereabouts(

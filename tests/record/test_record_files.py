@@ -499,6 +499,7 @@ def _event(number: int, data: dict[str, object]) -> Event:
     )
 
 
+@pytest.mark.long
 def test_values_are_counted_before_they_are_made(header: MakeHeader, tmp_path: Path) -> None:
     """A small packed record of 30 million empty maps takes little memory to read, and says why.
 

@@ -179,6 +179,7 @@ def sync(flag: Path, what: str) -> list[str]:
     return [sys.executable, "-c", SYNC, str(flag), what]
 
 
+@pytest.mark.long
 def test_a_disk_that_reports_errors_later_halts_the_match_once(tmp_path: Path) -> None:
     """If `fsync` reports an error, the match is halted; after a resume it is not halted again."""
     contest, broken = write_contest(tmp_path / "contest.toml"), tmp_path / "broken"

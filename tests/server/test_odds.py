@@ -122,6 +122,7 @@ class Counting:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_the_odds_of_a_record(tmp_path: Path) -> None:
     """The last odds come from the result, and kept forks are not played again."""
     arena = arenas.load("othello", QUICK)

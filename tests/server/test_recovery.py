@@ -123,6 +123,7 @@ def test_changed_settings_count_from_the_next_match(contest: Path, folder: Path)
         assert those.view.sheet.duration_s == 75
 
 
+@pytest.mark.long
 def test_the_health_verdict_outlives_a_kill(contest: Path, folder: Path) -> None:
     """The health verdict counts the time before a kill; many restarts make it advise a rematch."""
     lasts(contest, 4)

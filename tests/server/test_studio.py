@@ -264,6 +264,7 @@ def test_a_gait_file_of_the_other_kind_is_refused_as_at_a_court(is_pair: bool) -
     assert [one.found for one in studio.value.mistakes] == [say("gait.other-kind")]
 
 
+@pytest.mark.long
 def test_a_process_that_dies_is_replaced(asker: Asker) -> None:
     """A killed process is replaced, and its request is done by the new one.
 
