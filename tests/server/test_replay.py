@@ -76,7 +76,7 @@ def boundaries(data: bytes) -> list[int]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", [pytest.param("othello", marks=pytest.mark.long), "flag-strike"])
 def test_a_simulated_match_verifies(arena: str, tmp_path: Path) -> None:
     """The verdict on the record of a simulated match is "same", in either game."""
     made = setup(arena, {"match": {"duration_s": 20.0}})

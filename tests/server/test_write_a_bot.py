@@ -25,7 +25,7 @@ def name_of(block: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", ["othello", pytest.param("flag-strike", marks=pytest.mark.long)])
 @pytest.mark.parametrize("block", BLOCKS, ids=name_of)
 def test_the_page_s_bots_play(tmp_path: Path, block: str, arena: str) -> None:
     """Each bot of the page plays both games: it walks, and presses no key that is pressed."""
