@@ -3,6 +3,7 @@
 import hashlib
 import sys
 from collections import deque
+from contextlib import chdir
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -176,12 +177,18 @@ def _from_source(name: str, source: bytes) -> BotFactory:
     digest = hashlib.blake2b(name.encode(errors="replace") + source, digest_size=6)
     module: Any = ModuleType(f"lacoc_bot_{digest.hexdigest()}")
     module.__file__ = name
-    sys.modules[module.__name__] = module  # `dataclasses` looks there for the module of a class
+    # `dataclasses` looks there for the module of a class, also while the bot plays.
+    sys.modules[module.__name__] = module
 
     def load() -> None:
-        exec(compile(source, name, "exec", dont_inherit=True), module.__dict__)
+        with chdir("."):  # the bot may go to another folder
+            exec(compile(source, name, "exec", dont_inherit=True), module.__dict__)
 
-    loaded(name, load)
+    try:
+        loaded(name, load)
+    except UserError:
+        del sys.modules[module.__name__]
+        raise
     if not callable(getattr(module, "bot", None)):
         raise UserError(say("bot.no-function", path=name))
     factory: BotFactory = module.bot

@@ -140,7 +140,9 @@ def _written(write: Callable[[object], str], value: object) -> str:
     """Return a bot's value as `write` (`repr` or `str`) writes it; its type's name if it can't."""
     try:
         return write(value)
-    except Exception:  # the bot's own code writes it
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # the bot's own code writes it
         return type(value).__name__
 
 
@@ -148,5 +150,5 @@ def _place(function: object) -> str | None:
     """Return the file and line where a function begins; None if it is no Python function."""
     if not isinstance(function, FunctionType | MethodType):
         return None
-    code = function.__code__
-    return f"{code.co_filename}:{code.co_firstlineno}"
+    code = getattr(function, "__code__", None)  # a method may be that of any callable
+    return None if code is None else f"{code.co_filename}:{code.co_firstlineno}"

@@ -23,7 +23,7 @@ _LOCOMOTION = ("LocoTra-data.txt", "LocoTra-data*.txt")
 USUAL_NAMES = ("robot.toml", *GAIT_NAMES)
 """Usual names of the files of a join in a folder."""
 
-_LIKE_GAIT = re.compile(r"loco.*\.(txt|xlsx)", re.IGNORECASE)
+_LIKE_GAIT = re.compile(r"loco(tra)?-.*\.(txt|xlsx)", re.IGNORECASE)
 
 _ZIP = b"PK\x03\x04"  # first bytes of a workbook
 

@@ -20,6 +20,7 @@ from lacoc_server.contest.league.facts import (
     Closed,
     Drawn,
     Entered,
+    Moved,
     Played,
     Replaced,
     Withdrawn,
@@ -633,6 +634,8 @@ def test_a_match_is_moved(room: Room) -> None:
     assert slot.moved.court == other
     assert said(room.ask(Move(secret=KEY, pairing=last, court="east"))) == "desk.no-court"
     assert said(room.ask(Move(secret=KEY, pairing=last, not_before_ms=1))) == "day.in-the-past"
+    room.store.append(new(Moved, pairing=last, not_before_ms=1))  # by now it is in the past
+    assert isinstance(room.ask(Move(secret=KEY, pairing=last, not_before_ms=1)), Said)
     assert said(room.ask(Move(secret=KEY, pairing="x:a1.1"))) == "decide.no-match"
     assert said(room.ask(Move(secret=KEY, pairing=last, before=last))) == "desk.before-itself"
 

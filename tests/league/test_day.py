@@ -308,6 +308,29 @@ def test_who_has_a_result_by_a_decision_keeps_its_place() -> None:
     assert cup.contest.stages[0].stage.entries == ("late", "t002", "t003", "t004")
 
 
+def test_what_takes_a_decision_back_takes_its_result_back() -> None:
+    """A game that is played again takes no other game's result along.
+
+    When a substitute comes for a team that did not come, its opponent is free again too.
+    """
+    cup = Cup("single-knockout", games=3)
+    first, second = cup.contest.stages[0].matches[:2]
+    about = {"pairing": first.pairing.id, "teams": ("t001", "t004"), "reason": "agreed"}
+    for game in (1, 2):
+        cup.add(Replaced, game=game, scores=(9, 1), outcome="left", **about)
+    cup.add(Replay, game=2, **about)
+    assert cup.contest.with_result == {"cup": {"t001", "t004"}}
+    cup.add(Replay, game=1, **about)
+    assert cup.contest.with_result == {}
+    left, right = second.teams
+    for team, other in ((left, right), (right, left)):
+        cup.add(NoShow, pairing=second.pairing.id, team=team, opponent=other)
+        assert cup.contest.with_result == ({"cup": {other}} if team == left else {})
+    cup.add(Entered, team="late", reason="a reserve", files="x")
+    cup.add(Substituted, team=left, substitute="late", reason="ill")
+    assert cup.contest.with_result == {}
+
+
 def test_who_did_not_come_in_one_match_may_come_to_another() -> None:
     """A correction gives a team another opponent: it is not absent in the new match."""
     cup = Cup("single-knockout")
@@ -373,10 +396,12 @@ def test_a_substitute_is_in_the_draw_that_is_made_again() -> None:
     cup.append(draw)
     cup.add(Substituted, team=first, substitute="late", reason="ill")
     assert cup.contest.stages[1].stage.entries == ("late", second)
+    cup.add(Entered, team="later", reason="another reserve", files="x")
+    cup.add(Substituted, team="late", substitute="later", reason="ill")
     cup.add(Undrawn, stage="finals", reason="a wrong order")
     draw = due(cup.contest, FORMATS)
     assert isinstance(draw, Drawn)
-    assert draw.entries == ("late", second)
+    assert draw.entries == ("later", second)
 
 
 def test_a_draw_stays_while_a_court_has_a_game_of_it() -> None:

@@ -2,14 +2,13 @@
 
 import math
 import secrets
-import time
 from typing import Any
 
 import pytest
 from court_stub import make_scene
 from hypothesis import given
 from hypothesis import strategies as st
-from waiting import LIMIT_S
+from waiting import LIMIT_S, until
 
 from lacoc_server.doors.decision_desk import DecisionDesk
 from lacoc_server.doors.inbox import Inbox
@@ -164,9 +163,12 @@ def test_a_flood_of_wrong_tokens_pushes_no_decision_out() -> None:
             client.question(key, one, LIMIT_S) for one in [*[wrong] * 25, right, *[wrong] * 35]
         ]
         scene = client.question(keys.scene, b"", LIMIT_S)
-        while scene.take() is None:  # requests come in their order: then all have come
+
+        def has_come() -> bool:
             court._serve_fetches()
-            time.sleep(0.01)
+            return scene.take() is not None
+
+        until(has_come)  # requests come in their order: then all have come
         (arrival,) = court.poll(0.0, 1, 1, [True, True])
         assert isinstance(arrival.input, Decide)
         assert arrival.answer is not None

@@ -605,6 +605,16 @@ def test_many_gaps_end_what_is_read(header: MakeHeader, tmp_path: Path) -> None:
     assert "is damaged at byte" in words_of(record)
 
 
+def test_a_header_stands_where_its_segment_begins(header: MakeHeader, tmp_path: Path) -> None:
+    """Else the time of a header alone could claim years."""
+    late = RecordWriter(tmp_path, header(first_beat=2_000_000_000))
+    late.close()
+    there, other = (codec.encode(header(first_beat=n * 1_000_000_000)) for n in (2, 1))
+    late.path.write_bytes(late.path.read_bytes().replace(there, other))
+    with pytest.raises(NoMatch, match="a header of beat 1000000000 in beat 2000000000"):
+        Record.read(late.path)
+
+
 @pytest.mark.parametrize(
     ("topic", "beat"),
     [("frame", 5), ("snapshot", 5), ("sheet", 5), ("scene", 5), ("touch", 5), ("input", 4)],

@@ -95,7 +95,8 @@ def test_a_bot_may_go_to_another_folder(tmp_path: Path, monkeypatch: pytest.Monk
     Path("my_bot.py").write_text(
         f"import os\n{away}def bot(sheet, seat):\n    {away}    return lambda frame: None\n"
     )
-    words = ["my_bot.py", "straight", "--seconds", "0.1", "--record", "kept"]
+    Path("pilot_bot.py").write_text("def bot(sheet, seat):\n    return lambda frame: None\n")
+    words = ["my_bot.py", "pilot_bot.py", "--seconds", "0.1", "--record", "kept"]
     for more in ([], ["--both-sides", "--jobs", "1"]):
         done = CliRunner().invoke(app, [*words, *more])
         assert done.exit_code == 0, done.exception

@@ -3,7 +3,7 @@
 import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import chdir, closing
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -118,7 +118,7 @@ def simulate_command(
     loaded = arenas.load(arena, overrides)
     seats = [seat.id for seat in loaded.seats]
     _check_number(players, len(seats), rounds)
-    with screen.results_only(), chdir("."):  # a bot may go to another folder
+    with screen.results_only():
         out = _cannot_play(loaded, players, robot)
     fit = [name for name in players if name not in out]
     if out and json and leave_out:

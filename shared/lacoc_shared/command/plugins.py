@@ -73,8 +73,8 @@ def package_of_folder(folder: Path) -> ModuleType:
     The name depends on the Python files of the folder: changed code is imported as a new package.
     """
     folder = folder.resolve()
-    files = [file for file in sorted(folder.glob("*.py")) if file.is_file()]
-    code = repr((str(folder), [(file.name, file.read_bytes()) for file in files]))
+    files = [file for file in sorted(folder.rglob("*.py")) if file.is_file()]
+    code = repr([(str(file), file.read_bytes()) for file in files] or str(folder))
     name = f"lacoc_folder_{hashlib.blake2b(code.encode(), digest_size=6).hexdigest()}"
     if name in sys.modules:
         return sys.modules[name]

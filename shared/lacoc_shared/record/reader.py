@@ -208,6 +208,8 @@ class Record:
         """Add one message of a file to the record."""
         match topic:
             case "/lacoc/header":
+                if beat != message.first_beat:
+                    raise BadMessage(f"a header of beat {message.first_beat} in beat {beat}")
                 self._begin_segment(path, message)
                 return
             case "/lacoc/result":

@@ -50,9 +50,9 @@ const OF_SIGNS: ReadonlySet<string> = new Set(["Comma", "Period", "Minus", "Equa
  * The name that a key has on a US keyboard (as `event.code`).
  *
  * An input method hands every key on as "Process", so those are known by their place. Programs that
- * type for a person may send no place.
+ * type for a person may send no place, and a browser that fills in a form sends neither.
  */
-export function nameOfKey({ key, code }: KeyboardEvent): string {
+export function nameOfKey({ key = "", code = "" }: Partial<KeyboardEvent>): string {
   if (DIGIT.test(code)) return code;
   if (/^[a-z]$/i.test(key)) return `Key${key.toUpperCase()}`;
   if (key.length === 1 && OF_SIGNS.has(code)) return SIGNS[key] ?? key;

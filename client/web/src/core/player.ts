@@ -97,7 +97,8 @@ export class Player {
   private readying = false;
   /** When the page last saw a frame of the seat that it holds, by the clock: sleep counts. */
   private heldMs = Number.POSITIVE_INFINITY;
-  private isAway = false;
+  /** When it was last seen that no frame had come for long. */
+  private awayMs = Number.NEGATIVE_INFINITY;
   /** What the court said last of the links before the connection broke. */
   private oldHealth: Health | null = null;
   private signedMs = Number.NEGATIVE_INFINITY;
@@ -308,10 +309,11 @@ export class Player {
     untracked(() => this.tell({ is: "open" }));
   }
 
-  /** Whether the page held the seat and then slept for long, or was without a line. */
+  /** Whether the page, which held the seat, has just slept for long, or was without a line. */
   private wasAway(): boolean {
-    this.isAway ||= Date.now() - this.heldMs > BACK_MS;
-    return this.isAway;
+    const nowMs = Date.now();
+    if (nowMs - this.heldMs > BACK_MS) this.awayMs = nowMs;
+    return nowMs - this.awayMs < BACK_MS;
   }
 
   private tell(event: ClaimEvent): void {
@@ -373,7 +375,8 @@ export class Player {
   private begin(seat: string, index: number): void {
     this.sent = new SentKeys();
     this.isFresh = true;
-    this.isAway = false;
+    this.heldMs = Number.POSITIVE_INFINITY;
+    this.awayMs = Number.NEGATIVE_INFINITY;
     // The gateway says so in its next message; until then nothing may ask again.
     this.court.seat.value = { seat, index, hold: HELD, reason: null };
   }

@@ -126,6 +126,7 @@ export class Viewer implements Exposed {
   private ended = false;
   private slow = false;
   private noWebgl = false;
+  private webglAgainMs = WEBGL_AGAIN_MS;
   private first: Fineness | "none" | null = null;
   private thrift = 1;
   private size = { width: 0, height: 0 };
@@ -274,9 +275,10 @@ export class Viewer implements Exposed {
     setTimeout(() => {
       if (this.ended) return;
       if (!document.createElement("canvas").getContext("webgl2")) return this.awaitWebgl();
+      this.webglAgainMs *= 2; // the field may ask for more than this canvas
       this.noWebgl = false;
       this.drop();
-    }, WEBGL_AGAIN_MS);
+    }, this.webglAgainMs);
   }
 
   private async stageOf(fineness: Fineness): Promise<Stage | null> {

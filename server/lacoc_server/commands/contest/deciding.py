@@ -190,12 +190,13 @@ def carry_out(
             return None
 
         def decision(newest: "tuple[AnyFact, ...]") -> "Sequence[AnyFact]":
-            if newest == facts:
-                return more
-            found = act(compute(newest, FORMATS))
-            if asks and deciding.effect(newest, found) != shown:
-                raise UserError(say("decide.meanwhile"))
-            return found
+            nonlocal now, more
+            if newest != facts:
+                now = compute(newest, FORMATS)
+                more = act(now)
+                if asks and deciding.effect(newest, more) != shown:
+                    raise UserError(say("decide.meanwhile"))
+            return more
 
         store.decide(decision)
     return now, more

@@ -58,7 +58,8 @@ def enter(
         str | None,
         typer.Option(
             metavar="NAME",
-            help="Its school or club; a stage with apart = true draws teams of one club apart.",
+            help="Its school or club, '' for none; a stage with apart = true draws teams of one "
+            "club apart.",
         ),
     ] = None,
     by: By = "",

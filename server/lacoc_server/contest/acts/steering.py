@@ -52,7 +52,7 @@ def moving(
 
     Raises:
         UserError: if there is no such match or court, the match is decided, it would have to be
-            played before itself, or the time is in the past.
+            played before itself, or a new time is in the past.
     """
     coming = {one.pairing.id for one in foreseen(contest, FORMATS)}
     if pairing not in coming and match_of(contest, pairing).decided:
@@ -63,7 +63,8 @@ def moving(
         raise UserError(say("desk.before-itself"))
     if court and court not in courts:
         raise UserError(say("desk.no-court", court=court, courts=[*courts]))
-    if not_before_ms and not_before_ms <= now_ms:
+    was_ms = {move.pairing: move.not_before_ms for move in contest.moves}.get(pairing, 0)
+    if not_before_ms not in (0, was_ms) and not_before_ms <= now_ms:
         raise UserError(say("day.in-the-past"))
     return new(Moved, pairing=pairing, court=court, before=before, not_before_ms=not_before_ms)
 

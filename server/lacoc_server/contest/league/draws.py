@@ -143,6 +143,7 @@ def drawn_stages(
             for name, (plan, stage) in stages.items():
                 if fact.team not in results.teams(name):
                     stages[name] = plan, _substituted(stage, fact)
+                    results.replace(name, fact.team)
         elif isinstance(fact, Undrawn):
             if fact.stage not in stages:
                 unused[fact.id] = say("league.not-drawn", stage=fact.stage)
@@ -191,28 +192,45 @@ class _TeamsWithResults:
     """The teams that have results, as facts come one after another."""
 
     def __init__(self) -> None:
-        self._played: dict[str, set[str]] = {}
-        """By pairing: the teams that have played."""
-        self._ruled: dict[str, set[str]] = {}
-        """By pairing: the teams that have a result by a decision."""
+        self._played: set[tuple[str, str]] = set()
+        """Pairs of a stage and a team that has played in it."""
+        self._ruled: dict[tuple[str, int], tuple[str, ...]] = {}
+        """By pairing and game: the teams with a result by a decision; game 0: the whole match."""
+        self._absent: dict[str, dict[str, str]] = {}
+        """By pairing: the teams that did not come, each with its opponent."""
 
     def take(self, fact: AnyFact) -> None:
         """Take in a fact."""
         match fact:
             case Played():
-                self._played.setdefault(fact.pairing, set()).update(fact.teams)
-            case Replaced() | Voided():
-                self._ruled.setdefault(fact.pairing, set()).update(fact.teams)
-            case NoShow():
-                self._ruled.setdefault(fact.pairing, set()).add(fact.opponent)
+                self._played |= {(stage_of(fact.pairing), team) for team in fact.teams}
+            case Replaced():
+                self._ruled[fact.pairing, fact.game] = fact.teams
+            case Voided():
+                self._ruled[fact.pairing, 0] = fact.teams
+            case NoShow() if fact.opponent:
+                self._absent.setdefault(fact.pairing, {})[fact.team] = fact.opponent
             case Replay():
-                self._ruled.pop(fact.pairing, None)
+                self._ruled.pop((fact.pairing, fact.game), None)
+                self._ruled.pop((fact.pairing, 0), None)
+                self._absent.pop(fact.pairing, None)
+
+    def replace(self, stage: str, team: str) -> None:
+        """Forget who did not come to a team's matches in a stage: a substitute has its place."""
+        for pairing, absent in self._absent.items():
+            if stage_of(pairing) == stage:
+                kept = {one: other for one, other in absent.items() if team not in (one, other)}
+                self._absent[pairing] = kept
 
     def teams(self, stage: str) -> frozenset[str]:
         """Return the teams that have a result in a stage."""
-        every = (*self._played.items(), *self._ruled.items())
-        found = (teams for pairing, teams in every if stage_of(pairing) == stage)
-        return frozenset().union(*found)
+        found = {team for name, team in self._played if name == stage}
+        for (pairing, _), teams in self._ruled.items():
+            found.update(teams if stage_of(pairing) == stage else ())
+        for pairing, absent in self._absent.items():
+            came = {opponent for opponent in absent.values() if opponent not in absent}
+            found |= came if stage_of(pairing) == stage else set()
+        return frozenset(found)
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:

@@ -77,7 +77,7 @@ class Disqualified(Fact, frozen=True, kw_only=True, tag="disqualified"):
 
 
 class Substituted(Fact, frozen=True, kw_only=True, tag="substituted"):
-    """A substitute takes a team's place in all stages in which the team has not played yet."""
+    """A substitute takes a team's place in all drawn stages in which the team has no result yet."""
 
     team: Name
     """The team that gives its place up; it leaves the contest."""
@@ -184,7 +184,7 @@ class Drawn(Fact, frozen=True, kw_only=True, tag="drawn"):
 
 
 class Undrawn(Fact, frozen=True, kw_only=True, tag="undrawn"):
-    """A decision: the draw of a stage that nobody has played in is taken back."""
+    """A decision: the draw of a stage in which nobody has a result is taken back."""
 
     stage: str
     reason: str

@@ -41,14 +41,18 @@ def by_rank(contest: Contest, plan: Planned) -> tuple[str, ...]:
     places: they keep them.
     """
     before = {view.name: view for view in contest.stages}
-    if plan.after not in before:
-        return tuple(team.name for team in contest.teams)
-    ranked = before[plan.after].ranking
+    entered = tuple(team.name for team in contest.teams)
+    ranked = before[plan.after].ranking if plan.after in before else entered
     if plan.stage not in contest.undrawn:
         return ranked
     instead = {team.name: team.substitute for team in contest.teams if team.substitute}
-    new = {team: one for team, one in instead.items() if one not in ranked}
-    return tuple(new.get(team, team) for team in ranked)
+
+    def now(team: str) -> str:
+        while team in instead:
+            team = instead[team]
+        return team
+
+    return tuple(dict.fromkeys(now(team) for team in ranked))
 
 
 def first_meetings(plan: Planned, how: Format, order: tuple[str, ...]) -> Pairs:
