@@ -380,11 +380,13 @@ def write_segments(record: Record, folder: Path) -> list[Path]:
     )
     second.scene(again, scene)
     second.sheet(again, sheet)
-    for beat, scene in record.scenes:
-        first.scene(beat, scene)
-    for beat, sheet in record.sheets:
-        first.sheet(beat, sheet)
+    scenes, sheets = dict(record.scenes), dict(record.sheets)
     for beat, data in record.frames:
+        for writer in (*[first] * (beat < killed), *[second] * (beat > again)):
+            if beat in scenes:
+                writer.scene(beat, scenes[beat])
+            if beat in sheets:
+                writer.sheet(beat, sheets[beat])
         for event in (one for one in record.events if one.beat == beat):
             (first if beat < again else second).event(event)
         if beat >= again:
