@@ -40,9 +40,8 @@ from lacoc_shared.words import Phrase
 
 _RING = LOOKED_AT_PER_BEAT
 _DESK = 16
-_DECISION_DESK = LOOKED_AT_PER_BEAT  # a flood of wrong tokens must not push a decision out
 _FETCH_DESK = 256  # a crowd may arrive at once
-_ANSWERS_PER_BEAT = 4  # of a desk; at most one request of a desk enters a beat
+_REFUSALS_PER_BEAT = 4  # of a desk; at most one request of a desk enters a beat
 _FETCHES_PER_BEAT = 8
 
 
@@ -72,6 +71,15 @@ class Arrival(NamedTuple):
     input: Input
     answer: Callable[[Outcome], None] | None
     """Called once the outcome is on disk; None: nobody waits for it."""
+
+
+class _Desk(NamedTuple):
+    """Requests of one kind, and how they are judged."""
+
+    queue: RequestQueue
+    judge: _Judge
+    looks: int = _REFUSALS_PER_BEAT
+    """At how many of them the court looks in a beat, until one enters."""
 
 
 class CourtNetwork:
@@ -115,8 +123,8 @@ class CourtNetwork:
         self._sheet = session.publisher(keys.sheet)
         self._health = session.publisher(keys.health)
         self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
-        self._desks: list[tuple[RequestQueue, _Judge]] = [
-            (session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
+        self._desks = [
+            _Desk(session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
             for what, judge in (
                 ("join", inbox.join),
                 ("ready", inbox.ready),
@@ -126,17 +134,25 @@ class CourtNetwork:
         ]
         if try_out is not None:
             self._desks += [
-                (session.desk(keys.request(seat, "try"), _DESK), _try_judge(inbox, try_out, index))
+                _Desk(
+                    session.desk(keys.request(seat, "try"), _DESK),
+                    _try_judge(inbox, try_out, index),
+                )
                 for index, seat in enumerate(inbox.seats)
             ]
-        self._decisions = session.desk(keys.decision("*"), _DECISION_DESK)
-        self._desks.append((self._decisions, self._judge_decision))
+        # A flood of wrong tokens must not push a decision out.
+        decisions = session.desk(keys.decision("*"), LOOKED_AT_PER_BEAT)
+        self._desks.append(_Desk(decisions, self._judge_decision, LOOKED_AT_PER_BEAT))
         if look_ahead is not None:
             judge = _outlook_judge(decision_desk, look_ahead)
-            self._desks.append((session.desk(keys.outlook, _DESK), judge))
+            self._desks.append(_Desk(session.desk(keys.outlook, _DESK), judge))
         if office_desk is not None:
-            self._desks.append((session.desk(keys.office("*"), _DESK), _office_judge(office_desk)))
-        self._desks.append((session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk)))
+            self._desks.append(
+                _Desk(session.desk(keys.office("*"), _DESK), _office_judge(office_desk))
+            )
+        self._desks.append(
+            _Desk(session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk))
+        )
         self._waiting: dict[RequestQueue, tuple[Request, _Later]] = {}
         """By queue, the request that is still being judged; the requests behind it wait too."""
         self._sheet_desk = session.desk(keys.sheet, _FETCH_DESK)
@@ -186,8 +202,8 @@ class CourtNetwork:
         waiting = [_empty(ring) for ring in self._commands]
         inputs = self._inbox.commands(now_s, waiting, silent)
         arrivals = [Arrival(one, None) for one in inputs]
-        for desk, judge in self._desks:
-            arrivals += self._let_in(desk, judge)
+        for desk in self._desks:
+            arrivals += self._let_in(*desk)
         self._serve_fetches()
         # Not left to the match: records of earlier versions have such keys, and they took effect.
         leave = {one.input.seat for one in arrivals if isinstance(one.input, LeaveSeat)}
@@ -204,9 +220,9 @@ class CourtNetwork:
             why: sentence for the senders.
         """
         refusal = encode(Refusal(why, again=True))
-        for desk, _ in self._desks:
-            for _ in range(_ANSWERS_PER_BEAT):
-                if (request := desk.take()) is not None:
+        for desk in self._desks:
+            for _ in range(_REFUSALS_PER_BEAT):
+                if (request := desk.queue.take()) is not None:
                     request.refuse(refusal)
         self._serve_fetches()
 
@@ -282,9 +298,9 @@ class CourtNetwork:
             _serve(self._scene_desk, lambda: self._scene_bytes)
         _serve(self._log_desk, lambda: encode(tuple(self._log)))
 
-    def _let_in(self, desk: RequestQueue, judge: _Judge) -> Iterator[Arrival]:
-        answered = 0
-        for _ in range(_DECISION_DESK if desk is self._decisions else _ANSWERS_PER_BEAT):
+    def _let_in(self, desk: RequestQueue, judge: _Judge, looks: int) -> Iterator[Arrival]:
+        refused = 0
+        for _ in range(looks):
             if desk in self._waiting:
                 request, later = self._waiting.pop(desk)
                 judged: _Judged | _Later = later() or later
@@ -296,9 +312,9 @@ class CourtNetwork:
                 self._waiting[desk] = request, judged
                 return
             if isinstance(judged, Refusal):
-                if answered < _ANSWERS_PER_BEAT:  # the senders of further ones hear nothing
+                if refused < _REFUSALS_PER_BEAT:  # the senders of further ones hear nothing
                     request.refuse(encode(judged))
-                answered += 1
+                refused += 1
             elif isinstance(judged, _Told):
                 request.reply(encode(judged))
             else:

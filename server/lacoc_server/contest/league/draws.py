@@ -13,21 +13,19 @@ from lacoc_server.contest.league.facts import (
     Drawn,
     Entered,
     FilesChanged,
-    NoShow,
+    OfMatch,
     Planned,
     Played,
     Recalled,
-    Replaced,
-    Replay,
     RoundDrawn,
     Substituted,
     Undrawn,
     Unplanned,
-    Voided,
     Withdrawn,
     stage_of,
 )
 from lacoc_server.contest.league.formats.format import Format, Stage
+from lacoc_server.contest.league.matches import counting, match_teams
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import Phrase, say
 
@@ -130,26 +128,23 @@ def drawn_stages(
     """
     plans: dict[str, Planned] = {}
     stages: dict[str, tuple[Planned, Stage]] = {}
-    results = _TeamsWithResults()
     called: set[tuple[str, int]] = set()
     """The games that are at a court, by pairing and number."""
-    for fact in facts:
+    for number, fact in enumerate(facts):
         if isinstance(fact, Called):
             called.add((fact.pairing, fact.game))
         elif isinstance(fact, Recalled | Played):
             called.discard((fact.pairing, fact.game))
-        results.take(fact)
         if isinstance(fact, Substituted) and fact.id not in unused:
             for name, (plan, stage) in stages.items():
-                if fact.team not in results.teams(name):
+                if fact.team not in _with_result(stage, facts[:number]):
                     stages[name] = plan, _substituted(stage, fact)
-                    results.replace(name, fact.team)
         elif isinstance(fact, Undrawn):
             if fact.stage not in stages:
                 unused[fact.id] = say("league.not-drawn", stage=fact.stage)
             elif (
                 fact.stage != [*stages][-1]
-                or results.teams(fact.stage)
+                or _with_result(stages[fact.stage][1], facts[:number])
                 or any(stage_of(pairing) == fact.stage for pairing, _ in called)
             ):
                 unused[fact.id] = say("league.played-already", stage=fact.stage)
@@ -184,53 +179,26 @@ def drawn_stages(
             drawn = (*stage.drawn, fact.pairs)
             stages[fact.stage] = (plan, msgspec.structs.replace(stage, drawn=drawn))
     planned = [plan for name, plan in plans.items() if name not in stages]
-    with_result = {name: found for name in stages if (found := results.teams(name))}
-    return [*stages.values()], planned, with_result
+    with_result = {name: _with_result(stage, facts) for name, (_, stage) in stages.items()}
+    return [*stages.values()], planned, {name: one for name, one in with_result.items() if one}
 
 
-class _TeamsWithResults:
-    """The teams that have results, as facts come one after another."""
-
-    def __init__(self) -> None:
-        self._played: set[tuple[str, str]] = set()
-        """Pairs of a stage and a team that has played in it."""
-        self._ruled: dict[tuple[str, int], tuple[str, ...]] = {}
-        """By pairing and game: the teams with a result by a decision; game 0: the whole match."""
-        self._absent: dict[str, dict[str, str]] = {}
-        """By pairing: the teams that did not come, each with its opponent."""
-
-    def take(self, fact: AnyFact) -> None:
-        """Take in a fact."""
-        match fact:
-            case Played():
-                self._played |= {(stage_of(fact.pairing), team) for team in fact.teams}
-            case Replaced():
-                self._ruled[fact.pairing, fact.game] = fact.teams
-            case Voided():
-                self._ruled[fact.pairing, 0] = fact.teams
-            case NoShow() if fact.opponent:
-                self._absent.setdefault(fact.pairing, {})[fact.team] = fact.opponent
-            case Replay():
-                self._ruled.pop((fact.pairing, fact.game), None)
-                self._ruled.pop((fact.pairing, 0), None)
-                self._absent.pop(fact.pairing, None)
-
-    def replace(self, stage: str, team: str) -> None:
-        """Forget who did not come to a team's matches in a stage: a substitute has its place."""
-        for pairing, absent in self._absent.items():
-            if stage_of(pairing) == stage:
-                kept = {one: other for one, other in absent.items() if team not in (one, other)}
-                self._absent[pairing] = kept
-
-    def teams(self, stage: str) -> frozenset[str]:
-        """Return the teams that have a result in a stage."""
-        found = {team for name, team in self._played if name == stage}
-        for (pairing, _), teams in self._ruled.items():
-            found.update(teams if stage_of(pairing) == stage else ())
-        for pairing, absent in self._absent.items():
-            came = {opponent for opponent in absent.values() if opponent not in absent}
-            found |= came if stage_of(pairing) == stage else set()
-        return frozenset(found)
+def _with_result(stage: Stage, facts: Iterable[AnyFact]) -> frozenset[str]:
+    """Return the teams of a stage that have a result in it: see `drawn_stages`."""
+    matches: dict[tuple[str, str, str], list[OfMatch]] = {}
+    for fact in facts:
+        if isinstance(fact, OfMatch) and stage_of(fact.pairing) == stage.name:
+            one, other = sorted(match_teams(fact)) or ("", "")
+            if {one, other} <= {*stage.entries}:  # else a substitute has a place now
+                matches.setdefault((fact.pairing, one, other), []).append(fact)
+    found: set[str] = set()
+    for (_, *teams), about in matches.items():
+        games, is_void, absent = counting((teams[0], teams[1]), about)
+        if games or is_void or any(isinstance(fact, Played) for fact in about):
+            found |= {*teams}
+        elif absent:
+            found |= {*teams} - absent
+    return frozenset(found)
 
 
 def _substituted(stage: Stage, fact: Substituted) -> Stage:

@@ -251,14 +251,21 @@ def counting(
     return games, is_void, absent
 
 
-def is_about(fact: OfMatch, teams: tuple[str, str]) -> bool:
-    """Return whether a fact names these two teams, in any order, as those of its match.
+def match_teams(fact: OfMatch) -> tuple[str, ...]:
+    """Return both teams that a fact names as those of its match.
 
-    A `Recalled` and a `Moved` name no teams.
+    () if it names none, as a `Recalled`, a `Moved`, and a `NoShow` of an older version.
     """
     if isinstance(fact, NoShow):
-        return fact.team in teams and fact.opponent in ("", *teams)
-    return {*getattr(fact, "teams", ())} == {*teams}
+        return (fact.team, fact.opponent) if fact.opponent else ()
+    return getattr(fact, "teams", ())
+
+
+def is_about(fact: OfMatch, teams: tuple[str, str]) -> bool:
+    """Return whether a fact names these two teams, in any order, as those of its match."""
+    if isinstance(fact, NoShow) and not fact.opponent:
+        return fact.team in teams
+    return {*match_teams(fact)} == {*teams}
 
 
 def _game(fact: Played | Replaced, played: Played | None, call: Called | None) -> CountedGame:
