@@ -186,10 +186,10 @@ def _from_source(name: str, source: bytes) -> BotFactory:
 
     try:
         loaded(name, load)
+        if not callable(getattr(module, "bot", None)):
+            raise UserError(say("bot.no-function", path=name))
     except UserError:
-        del sys.modules[module.__name__]
+        sys.modules.pop(module.__name__, None)
         raise
-    if not callable(getattr(module, "bot", None)):
-        raise UserError(say("bot.no-function", path=name))
     factory: BotFactory = module.bot
     return factory

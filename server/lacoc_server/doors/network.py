@@ -73,7 +73,7 @@ class Arrival(NamedTuple):
     """Called once the outcome is on disk; None: nobody waits for it."""
 
 
-class _Desk(NamedTuple):
+class _RequestDesk(NamedTuple):
     """Requests of one kind, and how they are judged."""
 
     queue: RequestQueue
@@ -124,7 +124,7 @@ class CourtNetwork:
         self._health = session.publisher(keys.health)
         self._commands = [session.ring(keys.command(seat), _RING) for seat in inbox.seats]
         self._desks = [
-            _Desk(session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
+            _RequestDesk(session.desk(keys.request(seat, what), _DESK), _seat_judge(judge, index))
             for what, judge in (
                 ("join", inbox.join),
                 ("ready", inbox.ready),
@@ -134,7 +134,7 @@ class CourtNetwork:
         ]
         if try_out is not None:
             self._desks += [
-                _Desk(
+                _RequestDesk(
                     session.desk(keys.request(seat, "try"), _DESK),
                     _try_judge(inbox, try_out, index),
                 )
@@ -142,16 +142,16 @@ class CourtNetwork:
             ]
         # A flood of wrong tokens must not push a decision out.
         decisions = session.desk(keys.decision("*"), LOOKED_AT_PER_BEAT)
-        self._desks.append(_Desk(decisions, self._judge_decision, LOOKED_AT_PER_BEAT))
+        self._desks.append(_RequestDesk(decisions, self._judge_decision, LOOKED_AT_PER_BEAT))
         if look_ahead is not None:
             judge = _outlook_judge(decision_desk, look_ahead)
-            self._desks.append(_Desk(session.desk(keys.outlook, _DESK), judge))
+            self._desks.append(_RequestDesk(session.desk(keys.outlook, _DESK), judge))
         if office_desk is not None:
             self._desks.append(
-                _Desk(session.desk(keys.office("*"), _DESK), _office_judge(office_desk))
+                _RequestDesk(session.desk(keys.office("*"), _DESK), _office_judge(office_desk))
             )
         self._desks.append(
-            _Desk(session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk))
+            _RequestDesk(session.desk(keys.where, _FETCH_DESK), _team_judge(self._team_desk))
         )
         self._waiting: dict[RequestQueue, tuple[Request, _Later]] = {}
         """By queue, the request that is still being judged; the requests behind it wait too."""

@@ -205,7 +205,13 @@ class Record:
                 self.cut = said
 
     def _take(self, path: Path, topic: str, beat: int, data: bytes, message: Any) -> None:
-        """Add one message of a file to the record."""
+        """Add one message of a file to the record.
+
+        Raises:
+            BadMessage: if no court writes such a message at this place: it is of an earlier beat,
+                or its beat has a message of a kind already that a beat has only once. A forger
+                could write two sheets of a beat: one for the proof, one for another reader.
+        """
         match topic:
             case "/lacoc/header":
                 if beat != message.first_beat:
@@ -218,47 +224,28 @@ class Record:
             case "/lacoc/health":
                 self.health = message
                 return
-        self._check_order(topic, beat, message)
+        if not self.headers or beat < max(self.last_beat, self.headers[-1].first_beat):
+            raise BadMessage(f"beat {beat} after beat {self.last_beat}")
         match topic:
             case "/lacoc/input":
                 self.inputs.setdefault(beat, []).append(message)
             case "/lacoc/event":
+                if message.beat != beat:
+                    raise BadMessage(f"an event of beat {message.beat} in beat {beat}")
                 self.events.append(message)
             case "/lacoc/frame":
-                self.frames.append((beat, data))
+                _add_once(topic, self.frames, beat, data)
             case "/lacoc/touch":
+                if beat in self.touches:
+                    raise BadMessage(f"a second touch of beat {beat}")
                 self.touches[beat] = message
             case "/lacoc/snapshot":
-                self.snapshots.append((beat, message))
+                _add_once(topic, self.snapshots, beat, message)
             case "/lacoc/sheet":
-                self.sheets.append((beat, message))
+                _add_once(topic, self.sheets, beat, message)
             case "/lacoc/scene":
-                self.scenes.append((beat, message))
+                _add_once(topic, self.scenes, beat, message)
         self.last_beat = beat
-
-    def _check_order(self, topic: str, beat: int, message: Any) -> None:
-        """Check that a court can have written a message of a beat at this place of the record.
-
-        Else a forger could write two sheets of a beat: one for the proof, one for a reader that
-        takes the first.
-
-        Raises:
-            BadMessage: if the message is of a beat before the last one, or if its beat already
-                has a message that a beat has only once.
-        """
-        if not self.headers or beat < max(self.last_beat, self.headers[-1].first_beat):
-            raise BadMessage(f"beat {beat} after beat {self.last_beat}")
-        if topic == "/lacoc/event" and message.beat != beat:
-            raise BadMessage(f"an event of beat {message.beat} in beat {beat}")
-        once: dict[str, Sequence[tuple[int, Any]]] = {
-            "/lacoc/frame": self.frames,
-            "/lacoc/snapshot": self.snapshots,
-            "/lacoc/sheet": self.sheets,
-            "/lacoc/scene": self.scenes,
-        }
-        is_second = any(number == beat for number, _ in once.get(topic, ())[-1:])
-        if is_second or (topic == "/lacoc/touch" and beat in self.touches):
-            raise BadMessage(f"a second {topic.removeprefix('/lacoc/')} of beat {beat}")
 
     def _begin_segment(self, path: Path, header: Header) -> None:
         if self.headers and header.match_id != self.header.match_id:
@@ -323,6 +310,12 @@ def _no_header(paths: Sequence[Path]) -> Phrase:
     if size == 0:
         return say("recording.empty", file=str(paths[0]))
     return say("recording.no-header", file=str(paths[0]), bytes=size)
+
+
+def _add_once(topic: str, items: list[tuple[int, V]], beat: int, message: V) -> None:
+    if items and items[-1][0] == beat:
+        raise BadMessage(f"a second {topic.removeprefix('/lacoc/')} of beat {beat}")
+    items.append((beat, message))
 
 
 def _drop(items: dict[int, V], beat: int) -> None:

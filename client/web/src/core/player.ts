@@ -300,8 +300,7 @@ export class Player {
     if (state === "holding" && this.wasAway()) {
       const health = court.health.value;
       if (health === this.oldHealth) return; // it comes twice a second
-      const seat = this.wishHere.peek()?.seat;
-      if (isDriven(health?.seats.find(({ id }) => id === seat))) {
+      if (isDriven(health, this.wishHere.peek()?.seat)) {
         untracked(() => this.tell({ is: "taken", why: { code: "hold.replaced" } }));
         return;
       }

@@ -119,7 +119,7 @@ export class Team {
     const at = this.court.welcome.peek()?.court;
     if (!there || !at) return;
     const { held, wanted } = this.player.seats(at);
-    const isHeard = isDriven(this.court.health.peek()?.seats.find(({ id }) => id === there.seat));
+    const isHeard = isDriven(this.court.health.peek(), there.seat);
     const move = nextMove({
       there,
       court: at,

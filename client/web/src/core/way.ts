@@ -1,6 +1,6 @@
 /** Where the page of a token goes next. Pure. */
 
-import type { SeatHealth, Whereabouts } from "./wire";
+import type { Health, Whereabouts } from "./wire";
 
 /** What the page knows when it decides where to go. */
 export interface Situation {
@@ -56,8 +56,9 @@ const HEARD_MS = 1500;
 /** A driver who was heard so long ago may still come back: a bad line, or a court that was killed. */
 export const BACK_MS = 10_000;
 
-/** Whether somebody holds the seat of this link, and was heard lately. */
-export function isDriven(link: SeatHealth | undefined): boolean {
+/** Whether somebody holds a seat, and was heard lately. */
+export function isDriven(health: Health | null, seat: string | undefined): boolean {
+  const link = health?.seats.find(({ id }) => id === seat);
   return Boolean(link?.session) && (link?.heard_ms ?? Number.POSITIVE_INFINITY) < HEARD_MS;
 }
 

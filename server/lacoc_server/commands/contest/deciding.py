@@ -58,8 +58,8 @@ def decide(
         scores=_scores(score),
         reason=reason,
     )
-    if carry_out(contest, by, lambda now: [deciding.decision(now, wanted)], asks=True, yes=yes):
-        screen.show(say("decide.done"))
+    done = say("decide.done")
+    carry_out(contest, by, lambda now: [deciding.decision(now, wanted)], done, asks=True, yes=yes)
 
 
 def withdraw(
@@ -155,21 +155,20 @@ def carry_out(
     file: "Path",
     by: str,
     act: "Callable[[Contest], Sequence[AnyFact]]",
+    done: Phrase | None = None,
     *,
     asks: bool = False,
     yes: bool = False,
-) -> "tuple[Contest, Sequence[AnyFact]] | None":
-    """Append the facts that `act` returns to the contest's facts.
+) -> None:
+    """Append the facts that `act` returns to the contest's facts, and print what was done.
 
     Args:
         file: the contest file.
         by: who of the staff decides; "": the organiser.
         act: returns the new facts for a given state of the contest.
+        done: what was done; None: it follows from the last of the facts.
         asks: whether to show what the new facts change, and to ask before they are appended.
         yes: do not ask.
-
-    Returns:
-        The contest before that, and the facts; None: the person does not want them.
 
     Raises:
         UserError: if `act` refuses, the facts can't be written, or they would change something else
@@ -180,6 +179,7 @@ def carry_out(
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.formats.installed import FORMATS
+    from lacoc_server.contest.league.timetable.steered import steered
 
     with FactStore(ContestFolder(file).facts, by) as store:
         facts = store.facts()
@@ -187,7 +187,7 @@ def carry_out(
         more = act(now)
         shown = deciding.effect(facts, more) if asks else ()
         if asks and not wanted_so(shown, yes):
-            return None
+            return
 
         def decision(newest: "tuple[AnyFact, ...]") -> "Sequence[AnyFact]":
             nonlocal now, more
@@ -199,7 +199,7 @@ def carry_out(
             return more
 
         store.decide(decision)
-    return now, more
+    screen.show(done or steered(now, more[-1]))
 
 
 def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:

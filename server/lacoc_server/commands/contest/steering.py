@@ -1,6 +1,6 @@
 """Commands for the day of a contest: what an organiser decides on the page /office."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from datetime import datetime, time
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,8 +16,6 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from lacoc_server.contest.league.contest import Contest
     from lacoc_server.contest.league.facts import AnyFact
 
@@ -50,7 +48,7 @@ def move(
         at_ms = _ms_of(at) if at else 0
         return [moving(now, courts, pairing, court, before, at_ms, _now_ms())]
 
-    _steer(contest, by, moved)
+    carry_out(contest, by, moved)
 
 
 def pause(
@@ -69,7 +67,7 @@ def pause(
 
         return [pausing(now, _ms_of(until) if until else 0, reason, _now_ms())]
 
-    _steer(contest, by, paused)
+    carry_out(contest, by, paused)
 
 
 def resume(contest: ContestArgument = FILE, by: By = "") -> None:
@@ -80,7 +78,7 @@ def resume(contest: ContestArgument = FILE, by: By = "") -> None:
 
         return [resuming(now, _now_ms())]
 
-    _steer(contest, by, resumed)
+    carry_out(contest, by, resumed)
 
 
 def shift(
@@ -99,7 +97,7 @@ def shift(
 
         return [shifting(minutes * MINUTE_MS, reason)]
 
-    _steer(contest, by, shifted)
+    carry_out(contest, by, shifted)
 
 
 def unshift(contest: ContestArgument = FILE, by: By = "") -> None:
@@ -110,7 +108,7 @@ def unshift(contest: ContestArgument = FILE, by: By = "") -> None:
 
         return [unshifting(now)]
 
-    _steer(contest, by, unshifted)
+    carry_out(contest, by, unshifted)
 
 
 def announce(
@@ -125,7 +123,7 @@ def announce(
 
         return [announcing(text)]
 
-    _steer(contest, by, announced)
+    carry_out(contest, by, announced)
 
 
 def substitute(
@@ -148,7 +146,7 @@ def substitute(
 
         return [substituting(now, team, other, reason)]
 
-    _steer(contest, by, substituted, asks=True, yes=yes)
+    carry_out(contest, by, substituted, asks=True, yes=yes)
 
 
 def undraw(
@@ -171,7 +169,7 @@ def undraw(
 
         return undrawing(now, stage, reason)
 
-    _steer(contest, by, undrawn, asks=True, yes=yes)
+    carry_out(contest, by, undrawn, asks=True, yes=yes)
 
 
 def staff(
@@ -195,22 +193,6 @@ def staff(
         return
     text = link(plan, contest, "office", plan.secrets.staff(who))
     screen.stdout.print(text, markup=False, soft_wrap=True)  # to be copied whole
-
-
-def _steer(
-    file: "Path",
-    by: str,
-    act: "Callable[[Contest], Sequence[AnyFact]]",
-    *,
-    asks: bool = False,
-    yes: bool = False,
-) -> None:
-    """Do as `carry_out` does, and print what was done: it follows from the last of the facts."""
-    from lacoc_server.contest.league.timetable.steered import steered
-
-    if (done := carry_out(file, by, act, asks=asks, yes=yes)) is not None:
-        now, more = done
-        screen.show(steered(now, more[-1]))
 
 
 def _ms_of(clock: str) -> int:

@@ -223,8 +223,7 @@ def _games(
             _seated(seat, team, one, steer)
             for seat, (team, one) in enumerate(zip(match.next_seats, entries, strict=True))
         )
-        job = _job(views[match.pairing.id], seated, late)
-        job = msgspec.structs.replace(job, arena=beside(folder, job.arena))
+        job = _job(views[match.pairing.id], seated, late, folder)
         yield _DueGame(match, job, "" if all(one.bot for one in entries) else steer)
 
 
@@ -263,7 +262,7 @@ def _tries(match: ContestMatch, facts: Sequence[AnyFact]) -> list[Played]:
     ]
 
 
-def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
+def _job(view: StageView, seated: tuple[Seated, ...], late: int, folder: Path) -> Job:
     plan = view.plan
     job = Job(
         match_id="",
@@ -275,7 +274,9 @@ def _job(view: StageView, seated: tuple[Seated, ...], late: int) -> Job:
         brings_record=True,
     )
     digest = hashlib.blake2b(msgspec.msgpack.encode((job, software())), digest_size=16)
-    return msgspec.structs.replace(job, match_id=digest.hexdigest())
+    # Wherever the folder is, the game keeps its name.
+    arena = beside(folder, plan.arena)
+    return msgspec.structs.replace(job, match_id=digest.hexdigest(), arena=arena)
 
 
 def _keep(folder: ContestFolder, job: Job, record: bytes | None) -> None:
