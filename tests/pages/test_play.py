@@ -19,7 +19,6 @@ from page_client import PageClient
 from playwright.sync_api import expect
 from show import violations
 from venue import TOKENS, Venue
-from waiting import until
 
 from lacoc_robots.library import sample_gait_files
 from lacoc_shared.codec import encode
@@ -690,35 +689,6 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
     page.page.click("text=Join again")
     page.stands("seated")
     elsewhere.wait(lambda: elsewhere.seat["hold"] == "replaced")
-
-
-@pytest.mark.long
-def test_a_device_that_wakes_takes_no_seat_back(venue: Venue, sit: Sit) -> None:
-    """A page that was away for long leaves the seat to whoever drives it now."""
-    page = seated(venue, sit)
-    page.page.add_init_script(
-        """const Usual = WebSocket;
-        window.sockets = [];
-        window.WebSocket = class extends Usual {
-          constructor(...of) { super(...of); window.sockets.push(this); }
-        };"""
-    )
-    page.page.reload()
-    page.stands("seated")
-    page.page.context.set_offline(True)
-    page.page.evaluate("(now => { Date.now = () => now() + 60_000; })(Date.now)")
-    page.page.evaluate("sockets.forEach((one) => one.close())")
-    elsewhere = venue.contestant("left", "Ants")
-    page.page.context.set_offline(False)
-
-    def is_told() -> bool:
-        elsewhere.ask("saw", **elsewhere.shown())
-        return "nother window or computer has taken" in page.page.inner_text("body")
-
-    until(is_told)
-    assert elsewhere.seat["hold"] == "held"
-    page.page.click("text=Join again")
-    page.stands("seated")
 
 
 @pytest.mark.long

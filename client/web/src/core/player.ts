@@ -20,12 +20,10 @@ import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
-import { BACK_MS, isDriven } from "./way";
 import {
   BEAT_S,
   type Frame,
   type Gains,
-  type Health,
   type HeldSeat,
   Phase,
   REPEATS_HZ,
@@ -95,12 +93,6 @@ export class Player {
   private isFresh = true;
   private readonly posData = new PosDataLog();
   private readying = false;
-  /** When the page last saw a frame of the seat that it holds, by the clock: sleep counts. */
-  private heldMs = Number.POSITIVE_INFINITY;
-  /** When it was last seen that no frame had come for long. */
-  private awayMs = Number.NEGATIVE_INFINITY;
-  /** What the court said last of the links before the connection broke. */
-  private oldHealth: Health | null = null;
   private signedMs = Number.NEGATIVE_INFINITY;
 
   /**
@@ -256,9 +248,7 @@ export class Player {
   private follow(): void {
     const { court } = this;
     effect(() => {
-      if (court.connection.state.value.open) return;
-      this.greeted.value = false;
-      this.oldHealth = court.health.peek();
+      if (!court.connection.state.value.open) this.greeted.value = false;
     });
     effect(() => {
       if (court.welcome.value) this.greeted.value = true;
@@ -295,24 +285,8 @@ export class Player {
     // asked again by the gateway.
     const isOpen =
       this.greeted.value && court.welcome.value?.can_act && court.link.value?.connected;
-    const { request, state } = this.claim.value;
-    if (!isOpen || !this.wishHere.value || request !== "none" || this.isHeld()) return;
-    if (state === "holding" && this.wasAway()) {
-      const health = court.health.value;
-      if (health === this.oldHealth) return; // it comes twice a second
-      if (isDriven(health, this.wishHere.peek()?.seat)) {
-        untracked(() => this.tell({ is: "taken", why: { code: "hold.replaced" } }));
-        return;
-      }
-    }
-    untracked(() => this.tell({ is: "open" }));
-  }
-
-  /** Whether the page, which held the seat, has just slept for long, or was without a line. */
-  private wasAway(): boolean {
-    const nowMs = Date.now();
-    if (nowMs - this.heldMs > BACK_MS) this.awayMs = nowMs;
-    return nowMs - this.awayMs < BACK_MS;
+    if (!isOpen || !this.wishHere.value || this.claim.value.request !== "none") return;
+    if (!this.isHeld()) untracked(() => this.tell({ is: "open" }));
   }
 
   private tell(event: ClaimEvent): void {
@@ -374,8 +348,6 @@ export class Player {
   private begin(seat: string, index: number): void {
     this.sent = new SentKeys();
     this.isFresh = true;
-    this.heldMs = Number.POSITIVE_INFINITY;
-    this.awayMs = Number.NEGATIVE_INFINITY;
     // The gateway says so in its next message; until then nothing may ask again.
     this.court.seat.value = { seat, index, hold: HELD, reason: null };
   }
@@ -396,8 +368,6 @@ export class Player {
     const index = this.index.peek();
     const seat = frame.seats[index];
     if (!seat) return;
-    this.wasAway(); // a page that wakes up first sees the frames of before
-    this.heldMs = Date.now();
     this.sign();
     this.posData.add(frame, index, this.court.sheet.peek());
     if (this.isFresh) {

@@ -54,7 +54,7 @@ export function nextMove(now: Situation): Move {
 /** Whoever was heard so lately drives the seat: a robot stands after a second (rules 3). */
 const HEARD_MS = 1500;
 /** A driver who was heard so long ago may still come back: a bad line, or a court that was killed. */
-export const BACK_MS = 10_000;
+const BACK_MS = 10_000;
 
 /** Whether somebody holds a seat, and was heard lately. */
 export function isDriven(health: Health | null, seat: string | undefined): boolean {
