@@ -9,9 +9,9 @@ is closed.
 import contextlib
 import gc
 import importlib
-import importlib.metadata
 import json
 import os
+import pkgutil
 import selectors
 import signal
 import socket
@@ -20,19 +20,27 @@ import sys
 from pathlib import Path
 
 from lacoc_shared.command.cli import main
+from lacoc_shared.words.table import table
 
 STATUS = struct.Struct("i")
 MOST_BYTES = 1 << 20
 
 
-def preload() -> None:
-    """Import the modules of all commands, games and robots."""
-    for group in ("lacoc.commands", "lacoc.commands.replay", "lacoc.arenas", "lacoc.robots"):
-        for entry in importlib.metadata.entry_points(group=group):
-            with contextlib.suppress(ImportError):  # without its satellite
-                entry.load()
-    import uvicorn.protocols.http.h11_impl  # noqa: F401
+PACKAGES = ("lacoc_shared", "lacoc_robots", "lacoc_arenas", "lacoc_server", "lacoc_client")
+LATER = ("typer._adapters", "uvicorn.protocols.http.h11_impl")
+"""Modules of libraries that are imported only when a command runs."""
 
+
+def preload() -> None:
+    """Import all our modules, also those that a command imports late, and read the sentences."""
+    for package in map(importlib.import_module, PACKAGES):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.name.endswith("__main__"):
+                with contextlib.suppress(ImportError):  # without its satellite
+                    importlib.import_module(module.name)
+    for name in LATER:
+        importlib.import_module(name)
+    table()
     gc.freeze()  # garbage collection in a child then copies no shared memory
 
 

@@ -26,6 +26,7 @@ from lacoc_shared.seat import NOBODY, Phase
 from lacoc_shared.words import Phrase, say
 
 HEXAPOD = entry()
+LONG = pytest.mark.long
 KEYS = {0: (FORWARD, FORWARD), 150: (TURN_LEFT, FORWARD), 220: (FORWARD, FORWARD)}
 
 
@@ -118,9 +119,9 @@ def test_a_state_of_another_model_is_refused() -> None:
     ("arena", "robot"),
     [
         ("flag-strike", "hexapod"),
-        pytest.param("othello", "hexapod", marks=pytest.mark.long),
-        pytest.param("practice", "octopod", marks=pytest.mark.long),
-        pytest.param("flag-strike", "long-legs", marks=pytest.mark.long),
+        pytest.param("othello", "hexapod", marks=LONG),
+        pytest.param("practice", "octopod", marks=LONG),
+        pytest.param("flag-strike", "long-legs", marks=LONG),
     ],
 )
 def test_a_path_has_the_bits_of_the_whole_model(arena: str, robot: str) -> None:
@@ -265,7 +266,7 @@ def _spoil(name: str, value: float, seat: int, offset: int) -> Callable[[World],
         ("qvel", math.inf, say("fault.velocity")),
     ],
 )
-@pytest.mark.parametrize("offset", [0, 8, 23])
+@pytest.mark.parametrize("offset", [pytest.param(0, marks=LONG), 8, pytest.param(23, marks=LONG)])
 def test_mujocos_silent_reset_is_caught(
     name: str, value: float, why: Phrase, seat: int, offset: int
 ) -> None:
