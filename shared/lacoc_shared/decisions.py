@@ -9,6 +9,10 @@ from typing import get_args
 
 import msgspec
 
+NUMBER_MAX = 1_000_000
+"""Largest absolute value of a decision's seconds, points or event number."""
+REFEREE_NAME_MAX = 100
+
 
 class _Decision(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     pass

@@ -93,6 +93,9 @@ def test_the_referee_has_every_decision(
     assert "give a reason" in referee.refused("adjust", "left", "2")
     taken = referee.decide("adjust", "left", "-2")
     assert taken["scores"] == [16, 18]
+    assert "reason is too long" in referee.refused("adjust", "left", "2", "--reason", "長" * 1400)
+    code, _, err = referee.run("adjust", "left", "9" * 30, "--reason", "x")
+    assert (code, "less than or equal to 1000000" in " ".join(err.split())) == (2, True)
     assert 'there is no seat "middle"' in referee.refused("adjust", "middle", "1", "--reason", "x")
     assert referee.decide("set", "A1", "neutral")["scores"] == [15, 18]
     tried = referee.decide("take-back", str(taken["event"]), "--dry-run")

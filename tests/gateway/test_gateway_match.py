@@ -200,6 +200,22 @@ def test_one_referee_acts_until_another_takes_over(venue: Venue) -> None:
     again.wait(lambda: again.referee == {"acting": "Lee", "mine": True})
 
 
+def test_who_only_watched_leaves_it_to_the_other_after_a_break(venue: Venue) -> None:
+    """A referee's page that comes back, and did not act before, does not act before the other."""
+    venue.court()
+    venue.web()
+    with PageClient(venue.url) as lee:
+        lee.ask("enter", token=REFEREE, by="Lee", acts=False)
+        lee.wait(lambda: lee.referee == {"acting": None, "mine": False})
+        kim = venue.referee("山田\u3000太郎")
+        kim.wait(lambda: kim.referee == {"acting": "山田 太郎", "mine": True})
+        lee.wait(lambda: lee.referee == {"acting": "山田 太郎", "mine": False})
+        kim.close()
+        lee.wait(lambda: lee.referee == {"acting": None, "mine": False})
+        lee.ask("take_over")
+        lee.wait(lambda: lee.referee == {"acting": "Lee", "mine": True})
+
+
 def test_a_killed_court_comes_back(venue: Venue) -> None:
     """Pages learn that their court is gone; when the court is back, they keep their seats."""
     court = venue.court()

@@ -54,6 +54,7 @@ def test_a_decision_becomes_an_input() -> None:
         ),
         ("start", encode({"token": "whistle"}), "refused.bad-decision", "bad-decision"),
         ("start", request(d.Start(), by=" "), "refused.who-decides", "bad-name"),
+        ("start", request(d.Start(), by="Kim\x1b[2J"), "refused.who-decides", "bad-name"),
         ("clock", request(d.Clock(math.nan)), "refused.decision", "out-of-range"),
         ("clock", request(d.Clock(math.inf)), "refused.decision", "out-of-range"),
         ("adjust", request(d.Adjust("left", 2**40)), "refused.decision", "out-of-range"),
@@ -69,6 +70,12 @@ def test_a_request_is_refused_with_its_reason(
     assert isinstance(refusal, Refusal)
     assert (refusal.why.code, faults(refusal.why)) == (code, [])
     assert desk.refused == {why: 1}
+
+
+def test_a_name_may_have_the_wide_space_of_japanese() -> None:
+    """A referee's name is taken in its usual form, whatever space was typed."""
+    taken = DecisionDesk(HASHES).decision("start", request(d.Start(), by="\u3000山田\u3000太郎 "))
+    assert taken == Decide("山田 太郎", "foul", d.Start())
 
 
 def test_the_refusal_of_a_wrong_decision_lists_all_decisions() -> None:

@@ -11,13 +11,34 @@ from playwright.sync_api import Locator, Page, expect
 from show import decide, violations
 from venue import REFEREE, TOKENS, Venue
 
+from lacoc_client.play.referee import RefereeClient
 from lacoc_client.web.gateway.browser import unseen
+from lacoc_client.web.gateway.wire import MessageKind
+from lacoc_shared import decisions as d
+from lacoc_shared.network.session import open_client
 
 pytestmark = pytest.mark.slow
 
 JAPANESE_NAMES = re.compile(
     r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
 )
+
+HOLD_ANSWERS = """
+kind => {
+  const send = WebSocket.prototype.send;
+  WebSocket.prototype.send = function (data) {
+    WebSocket.prototype.send = send;
+    const { onmessage } = this, held = [];
+    this.onmessage = event => {
+      if (new Uint8Array(event.data)[0] === kind) held.push(event);
+      else onmessage.call(this, event);
+    };
+    window.letGo = () => held.forEach(event => onmessage.call(this, event));
+    send.call(this, data);
+  };
+}
+"""
+"""Program for a page: from its next request on, it holds back answers until `letGo()`."""
 
 Referee = Callable[..., Page]
 
@@ -348,8 +369,12 @@ def test_each_closed_decision_says_why(court: Venue, referee: Referee) -> None:
     expect(bubble).to_be_visible()
     group(page, "Make official").hover()
     expect(bubble).to_have_text(f"{ONLY} finished. {IN_LOBBY}")
+    big(page).hover()
+    expect(bubble).to_contain_text("nobody has joined the left seat")
+    court.contestant("left", "Ants")
+    expect(bubble).to_contain_text(f"{IN_LOBBY}; nobody has joined the right seat")
     page.keyboard.press("Control+Enter")  # not legal: nothing happens
-    expect(page.locator(".log li")).to_have_count(1)
+    phase(page, 1)
     # Enter on a disc opens a popover, whose choices also say why they can't be pressed.
     disc(page, "c3r3").focus()
     page.keyboard.press("ArrowRight")
@@ -590,6 +615,71 @@ def test_two_referees_and_taking_over(court: Venue, referee: Referee) -> None:
     expect(first.locator(".acting.other")).to_contain_text("There is no referee now")
     first.locator(".acting").get_by_role("button", name="Take over").click()
     expect(first.locator(".acting.mine")).to_be_visible()
+    # Another tab of the same browser may be another referee's; a reload keeps each name.
+    tab = first.context.new_page()
+    tab.goto(first.url)
+    expect(tab.locator("input[name=by]")).to_have_value("Kim")
+    enter(tab, "Lee")
+    expect(tab.locator(".acting.other")).to_be_visible()
+    first.reload()
+    expect(first.locator(".acting.mine")).to_contain_text("Kim")
+    # A question whether to take over ends when that referee goes.
+    tab.locator(".acting").get_by_role("button", name="Take over").click()
+    expect(tab.get_by_role("dialog")).to_contain_text("Kim")
+    first.get_by_role("button", name="Leave").click()
+    expect(tab.get_by_role("dialog")).to_have_count(0)
+    expect(tab.locator(".acting.other")).to_contain_text("There is no referee now")
+    enter(first, "Kim")
+    expect(first.locator(".acting.mine")).to_be_visible()
+    expect(tab.locator(".acting.other")).to_contain_text("Kim is the referee")
+    expect(tab.get_by_role("dialog")).to_have_count(0)
+
+
+@pytest.mark.long
+def test_a_take_back_is_what_was_shown(court: Venue, referee: Referee) -> None:
+    """If the match changes meanwhile, the open dialog asks again; a refusal is said in words."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    step(page)
+    phase(page, 5)
+    with open_client([f"tcp/127.0.0.1:{court.court_port}"]) as session:
+        other = RefereeClient(session, "main", REFEREE)
+        adjusted = other.decide(d.Adjust("left", 7), "rule", "Sato")
+        has_scores(page, 25, 18)
+        page.keyboard.press("Control+z")
+        dialog = page.get_by_role("dialog")
+        expect(dialog.locator(".then")).to_have_text("18 : 18")
+        other.decide(d.Adjust("right", 3), "rule", "Sato")
+        expect(dialog.locator(".then")).to_have_text("18 : 21")
+        expect(dialog.locator(".scores dd").first).to_have_text("25 : 21")
+        dialog.locator("label.chip", has_text="rule").click()
+        assert adjusted.event is not None
+        other.decide(d.TakeBack(adjusted.event), "rule", "Sato")
+        dialog.locator("[type=submit]").click()
+        expect(dialog.locator("[role=alert]")).to_contain_text("can't be taken back")
+    expect(page.locator(".answer.no")).to_contain_text("can't be taken back")
+
+
+@pytest.mark.long
+def test_an_answer_closes_only_its_own_dialog(court: Venue, referee: Referee) -> None:
+    """The answer to a decision whose dialog was left does not close the dialog after it."""
+    page = at_the_desk(referee())
+    to_playing(page, court)
+    step(page)
+    phase(page, 5)
+    page.evaluate(HOLD_ANSWERS, MessageKind.REPLY)
+    seat(page, 0, "Score ±").click()
+    dialog = page.get_by_role("dialog")
+    dialog.locator("label.chip", has_text="rule").click()
+    dialog.locator("[type=submit]").click()
+    page.keyboard.press("Escape")
+    expect(dialog).to_have_count(0)
+    seat(page, 1, "Freeze").click()
+    dialog.locator("input[name=words]").fill("cable")
+    page.evaluate("letGo()")
+    has_scores(page, 19, 18)
+    expect(page.locator(".answer.yes")).to_be_visible()
+    expect(dialog.locator("input[name=words]")).to_have_value("cable")
 
 
 @pytest.mark.long
@@ -754,6 +844,26 @@ def test_nothing_runs_off_the_screen(court: Venue, referee: Referee, size: tuple
         " return box.width && box.right > innerWidth + 1; }).map(e => e.className || e.tagName)"
     )
     assert not wide
+
+
+@pytest.mark.long
+def test_the_longest_name_fits_a_phone(court: Venue, referee: Referee) -> None:
+    """A name of one long word widens neither a dialog nor the choices of a disc."""
+    page = at_the_desk(referee(size=(390, 844), query="?lang=ja"))
+    court.contestant("left", "久保田研究室六脚歩行ロボット開発チーム第二班東京")
+    court.contestant("right", "Bees")
+    phase(page, 2)
+    step(page)
+    phase(page, 4)
+    step(page)
+    phase(page, 5)
+    seat(page, 0, "再スタート").click()
+    dialog = page.get_by_role("dialog")
+    assert dialog.evaluate("it => it.scrollWidth <= it.clientWidth")
+    page.keyboard.press("Escape")
+    disc(page, "c3r3").click()
+    choices = page.locator(".pick .states .act").all()
+    assert all(choice.evaluate("it => it.scrollWidth <= it.clientWidth") for choice in choices)
 
 
 @pytest.mark.long

@@ -29,7 +29,16 @@ from lacoc_client.play.terminal import words
 from lacoc_client.play.terminal.line_view import event_columns
 from lacoc_client.play.terminal.plain import event_dict, frame_dict, outlook_dict, reply_dict
 from lacoc_shared.command import options, screen
-from lacoc_shared.decisions import DECISIONS, OLD_FIELDS, Adjust, Clock, Decision, Restart, TakeBack
+from lacoc_shared.decisions import (
+    DECISIONS,
+    NUMBER_MAX,
+    OLD_FIELDS,
+    Adjust,
+    Clock,
+    Decision,
+    Restart,
+    TakeBack,
+)
 from lacoc_shared.messages import (
     OUTLOOK_MOST_S,
     DecisionReply,
@@ -82,6 +91,7 @@ _FIELDS = {
     "dry_run": "Only show what would change.",
     "winner": "The seat that wins, or 'draw'.",
 }
+_BOUNDS: dict[str, Any] = {"min": -NUMBER_MAX, "max": NUMBER_MAX}
 _TYPES = {int: "A whole number.", float: "A number.", bool: "Yes or no."}
 
 _TokenUnused = Annotated[
@@ -193,7 +203,8 @@ def _annotation(field: FieldInfo) -> Any:
     help = _FIELDS.get(field.name) or _TYPES.get(field.type, "A word.")
     if _is_argument(field):
         name = field.encode_name.removesuffix("_s").upper()
-        return Annotated[field.type, typer.Argument(metavar=name, help=help)]
+        bounds = _BOUNDS if field.type in (int, float) else {}
+        return Annotated[field.type, typer.Argument(metavar=name, help=help, **bounds)]
     return Annotated[
         field.type, typer.Option(f"--{field.encode_name.replace('_', '-')}", help=help)
     ]
@@ -275,7 +286,9 @@ def outlook(
     ] = 10.0,
     take_back: Annotated[
         int | None,
-        typer.Option(metavar="EVENT", help="Take back the event with this number before."),
+        typer.Option(
+            metavar="EVENT", help="Take back the event with this number before.", **_BOUNDS
+        ),
     ] = None,
     restart: Annotated[
         str | None,

@@ -1,8 +1,9 @@
 """A referee's connection to a court: it sends decisions and returns the court's replies."""
 
 from lacoc_client.play.asking import ask
+from lacoc_shared.codec import encode
 from lacoc_shared.decisions import Decision
-from lacoc_shared.keyspace import KeySpace
+from lacoc_shared.keyspace import DECISION_MAX_BYTES, KeySpace
 from lacoc_shared.messages import (
     DecisionReply,
     DecisionRequest,
@@ -11,8 +12,9 @@ from lacoc_shared.messages import (
     Outlook,
     OutlookRequest,
 )
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.session import Session
-from lacoc_shared.words import Phrase
+from lacoc_shared.words import Phrase, say
 
 _OUTLOOK_S = 30.0
 """Longest wait for an outlook [s]: a court computes it while its beats go on."""
@@ -51,10 +53,14 @@ class RefereeClient:
 
         Raises:
             NoAnswer: if no reply came. The decision may have been made; the log of events shows it.
-            UserError: if the court refuses; the message is its reason.
+            UserError: if the court refuses; the message is its reason. Also if the reason is too
+                long.
         """
         name = str(type(decision).__struct_config__.tag)
         request = DecisionRequest(token=self._token, by=by, reason=reason, decision=decision)
+        # A court's door drops what is larger, without an answer.
+        if len(encode(request)) > DECISION_MAX_BYTES:
+            raise UserError(say("refused.reason-too-long"))
         key = self._keys.decision(name)
         return ask(self._session, self._keys, key, request, DecisionReply)
 

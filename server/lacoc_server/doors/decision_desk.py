@@ -11,13 +11,12 @@ import msgspec
 
 from lacoc_server.doors.sessions import AnyToken, Why
 from lacoc_shared import codec, seal
-from lacoc_shared.decisions import DECISIONS, Decision
+from lacoc_shared.contest.names import read_name
+from lacoc_shared.decisions import DECISIONS, NUMBER_MAX, REFEREE_NAME_MAX, Decision
 from lacoc_shared.inputs import Decide
 from lacoc_shared.keyspace import DECISION_MAX_BYTES
 from lacoc_shared.messages import DecisionRequest, Done, Enter, OutlookRequest, Refusal
 from lacoc_shared.words import Phrase, say
-
-_NUMBER_MAX = 1e6  # largest absolute value of seconds, points and event numbers
 
 
 class _Name(msgspec.Struct):
@@ -68,13 +67,14 @@ class DecisionDesk:
         except codec.BadMessage as error:
             said = say("refused.bad-decision", error=str(error), decisions=_all_decisions())
             return self._refuse(Why.BAD_DECISION, said)
-        if not (request.by.strip() and request.by.isprintable()):
+        by = read_name(request.by, REFEREE_NAME_MAX)
+        if by is None:
             return self._refuse(Why.BAD_NAME, say("refused.who-decides"))
         if not _numbers_are_sane(request.decision):
             why = say("why.number-too-large")
             said = say("refused.decision", decision=name, why=why)
             return self._refuse(Why.OUT_OF_RANGE, said)
-        return Decide(request.by.strip(), request.reason, request.decision)
+        return Decide(by, request.reason, request.decision)
 
     def outlook(self, payload: bytes) -> OutlookRequest | Refusal:
         """Check a request for an outlook: its token, form and numbers.
@@ -117,7 +117,7 @@ def _is_reason(reason: Phrase | str) -> bool:
 
 def _numbers_are_sane(decision: Decision) -> bool:
     numbers = [n for n in msgspec.structs.astuple(decision) if isinstance(n, int | float)]
-    return all(math.isfinite(number) and abs(number) <= _NUMBER_MAX for number in numbers)
+    return all(math.isfinite(number) and abs(number) <= NUMBER_MAX for number in numbers)
 
 
 def _all_decisions() -> str:

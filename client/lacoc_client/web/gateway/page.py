@@ -21,6 +21,8 @@ from lacoc_client.web.gateway.referees import Referees
 from lacoc_client.web.gateway.viewer import USUAL_HZ, Viewer
 from lacoc_client.web.gateway.welcome import welcome
 from lacoc_shared.contest.access import Access
+from lacoc_shared.contest.names import read_name
+from lacoc_shared.decisions import REFEREE_NAME_MAX
 from lacoc_shared.messages.office import Whereabouts
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.network.allowance import Allowance
@@ -254,8 +256,8 @@ class Page:
             asyncio.get_running_loop().create_task(self._websocket.close(TRY_LATER, "full"))
 
     async def _enter(self, asked: wire.EnterAsk, feed: CourtFeed, referees: Referees) -> Any:
-        by = asked.by.strip()
-        if not (by and by.isprintable()):
+        by = read_name(asked.by, REFEREE_NAME_MAX)
+        if by is None:
             raise UserError(say("gateway.who-are-you"))
         # One at a time, so that a page that tries wrong tokens uses one thread, not many.
         if self._entering.locked():
@@ -264,7 +266,7 @@ class Page:
             await self._show_token(asked.token, feed)
         self._accepted(asked.token)
         if referees is self._referees:  # the page may have gone to another court
-            referees.enter(self._viewer, asked.token, by)
+            referees.enter(self._viewer, asked.token, by, asked.acts)
             self._log(f"{by} sits down as a referee.", "referee", by=by)
         return {}
 

@@ -17,10 +17,18 @@ class Referees:
         self._entered: dict[Viewer, tuple[str, str]] = {}
         self._acting: Viewer | None = None
 
-    def enter(self, viewer: Viewer, token: str, by: str) -> None:
-        """Add a page that has shown a referee's token; it becomes the acting page if none is."""
+    def enter(self, viewer: Viewer, token: str, by: str, acts: bool) -> None:
+        """Add a page that has shown a referee's token.
+
+        Args:
+            viewer: the page.
+            token: a referee's token of the court.
+            by: the referee's name.
+            acts: whether it becomes the acting page if none is. A page that only watched before its
+                connection broke leaves that to the page that acted.
+        """
         self._entered[viewer] = (token, by)
-        self._act(self._acting or viewer)
+        self._act(self._acting or (viewer if acts else None))
 
     def take_over(self, viewer: Viewer) -> None:
         """Make a page the acting page, in place of the present one.

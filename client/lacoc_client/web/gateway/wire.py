@@ -187,6 +187,8 @@ class EnterAsk(Ask, frozen=True, kw_only=True, tag="enter"):
 
     token: _Token
     by: _Short
+    acts: bool = True
+    """Whether this page may decide from now on if no other page does."""
 
 
 class TakeOver(Ask, frozen=True, kw_only=True, tag="take_over"):

@@ -57,10 +57,13 @@ export type Group = (typeof GROUPS)[number];
 
 const groups = new Set<Group>();
 const words = signal<Words>({});
+/** Whether all groups are in `words`, or tests gave the words. */
+let hasAll = true;
 
 /** Load parts of the words in the reader's language, and again whenever she chooses another. */
 export async function loadWords(...wanted: Group[]): Promise<void> {
   for (const group of wanted) groups.add(group);
+  if (groups.size < GROUPS.length) hasAll = false;
   await load(language.peek());
 }
 
@@ -71,7 +74,9 @@ language.subscribe((into) => {
 async function load(into: Language): Promise<void> {
   const files = [...groups].map((group) => import(`./texts/${into}/${group}.json`));
   const parts: { default: Words }[] = await Promise.all(files);
-  if (into === language.value) setWords(Object.assign({}, ...parts.map((part) => part.default)));
+  if (into !== language.value) return;
+  hasAll = files.length === GROUPS.length;
+  setWords(Object.assign({}, ...parts.map((part) => part.default)));
 }
 
 export function setWords(all: Words): void {
@@ -95,8 +100,12 @@ export function t(name: MessageName, holes: Record<string, string | number> = {}
  */
 export function said(what: Phrase | string): string {
   if (typeof what === "string") return what;
-  if (groups.size > 0 && groups.size < GROUPS.length && lacksWords(what)) {
-    void loadWords(...GROUPS);
+  if (!hasAll && lacksWords(what)) {
+    if (groups.size < GROUPS.length) {
+      loadWords(...GROUPS).catch(() => {
+        hasAll = true; // without a network there are no more: codes are better than nothing
+      });
+    }
     return "…";
   }
   return render(what, words.value);

@@ -218,7 +218,7 @@ function useKeys({ sheet, files, trials, learning, membership }: Studio): void {
       if (key === "enter") void trials.tryIt();
       else if (key === "s" && membership.name.peek()) {
         const trouble = learning.phases.peek()?.trouble;
-        toast(trouble ? said(trouble) : t("design.class.kept"));
+        toast(() => (trouble ? said(trouble) : t("design.class.kept")));
       } else if (key === "s") void files.keep();
       else if (key === "z" && !isField) event.shiftKey ? sheet.redo() : sheet.undo();
       else if (key === "y" && !isField) sheet.redo();

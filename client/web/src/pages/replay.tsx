@@ -129,7 +129,7 @@ async function showBeside(player: Player): Promise<void> {
   } catch (error) {
     const trouble =
       error instanceof BadRecord ? error : new BadRecord("fault", { error: String(error) });
-    toast(troubleText(trouble), "no");
+    toast(() => troubleText(trouble), "no");
   }
 }
 

@@ -242,7 +242,7 @@ export function FileTrouble({ teacher }: { teacher: Teacher }) {
   return (
     <Dialog
       key={trouble}
-      title={trouble.text}
+      title={teacher.reason(trouble.why)}
       onClose={() => {
         if (teacher.trouble.peek() === trouble) teacher.trouble.value = null;
       }}

@@ -5,6 +5,7 @@ import { runKey, socketUrl } from "../../core/address";
 import { masked, numbered, OPEN_RULES, placed, toggled, withCard } from "../../core/class";
 import { Connection, Refused } from "../../core/connection";
 import { download } from "../../core/files";
+import type { Phrase } from "../../core/phrase";
 import { remembered } from "../../core/settings";
 import { tab } from "../../core/storage";
 import {
@@ -63,7 +64,7 @@ export class Teacher {
   readonly screen = signal<Screen | null>(null);
   readonly handout = signal<Handout | null>(null);
   /** A file that could not be read. */
-  readonly trouble = signal<{ text: string; mistakes: readonly Mistake[] } | null>(null);
+  readonly trouble = signal<{ why: Phrase | string; mistakes: readonly Mistake[] } | null>(null);
   /** Whether cards keep their places, because somebody is about to click one. */
   readonly holds = signal(false);
   /** Whether names are hidden. */
@@ -127,18 +128,17 @@ export class Teacher {
     try {
       return await this.connection.ask<T>(what, fields);
     } catch (error) {
-      const text = this.reason(error);
-      const { mistakes } = error as Refused;
-      if (mistakes.length) this.trouble.value = { text, mistakes };
-      else toast(text, "no");
+      if (!(error instanceof Refused)) throw error;
+      const { why, mistakes } = error;
+      if (mistakes.length) this.trouble.value = { why, mistakes };
+      else toast(() => this.reason(why), "no");
       return null;
     }
   }
 
   /** Why something was refused, in words. */
-  reason(error: unknown): string {
-    if (!(error instanceof Refused)) throw error;
-    return this.hide(sentence(error.why));
+  reason(why: Phrase | string): string {
+    return this.hide(sentence(why));
   }
 
   async change(rules: StudentRules): Promise<void> {

@@ -3,6 +3,7 @@
 import { useComputed, useSignal } from "@preact/signals";
 import { useEffect, useMemo } from "preact/hooks";
 import { barsPath, looped } from "../../core/class";
+import { Refused } from "../../core/connection";
 import { trialSource } from "../../core/design/sources";
 import {
   figure,
@@ -12,6 +13,7 @@ import {
   readTrial,
   type Trial,
 } from "../../core/design/trial";
+import type { Phrase } from "../../core/phrase";
 import { quality } from "../../core/settings";
 import { BEATS_PER_S, type RobotReply } from "../../core/wire";
 import { said, t } from "../../i18n";
@@ -31,7 +33,7 @@ const fineness = qualityOfAddress() ?? quality;
 
 export function Walk({ teacher, name }: { teacher: Teacher; name: string }) {
   const shown = useSignal<Shown | null>(null);
-  const refused = useSignal("");
+  const refused = useSignal<Phrase | string>("");
   useEffect(() => {
     let isWanted = true;
     shown.value = null;
@@ -41,7 +43,7 @@ export function Walk({ teacher, name }: { teacher: Teacher; name: string }) {
         if (isWanted) shown.value = { robot, trial: readTrial(trial, robot.legs.length) };
       },
       (error) => {
-        if (isWanted) refused.value = teacher.reason(error);
+        if (isWanted) refused.value = error instanceof Refused ? error.why : String(error);
       },
     );
     return () => {
@@ -76,7 +78,7 @@ export function Walk({ teacher, name }: { teacher: Teacher; name: string }) {
           <Trying key={name} shown={shown.value} />
         ) : (
           <p class="waits" role="status">
-            {refused.value || t("class.screen.wait")}
+            {refused.value ? teacher.reason(refused.value) : t("class.screen.wait")}
           </p>
         )}
       </div>

@@ -34,6 +34,10 @@ export function Act({ why, onAct, tone = "", label, children }: Props) {
   const hide = useCallback(() => {
     if (bubble.peek()?.of === id) bubble.value = null;
   }, [id]);
+  useEffect(() => {
+    const shown = bubble.peek();
+    if (shown?.of === id) bubble.value = why ? { ...shown, text: why } : null;
+  }, [id, why]);
   // A button that goes away under the pointer tells nobody that it was left.
   useEffect(() => hide, [hide]);
   return (

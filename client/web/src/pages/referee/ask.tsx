@@ -1,10 +1,10 @@
 /** The dialog before a decision: what it does, its number, its reason, and the confirmation. */
 
-import { type Signal, useSignal } from "@preact/signals";
+import { type Signal, useComputed, useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Phrase } from "../../core/phrase";
 import { type DecisionName, type DecisionReply, NEED_A_REASON } from "../../core/wire";
-import { said, t } from "../../i18n";
+import { said, sentence, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
 import { Standings } from "./day";
 import { COMMON_REASONS, type Desk, reasonOf } from "./desk";
@@ -33,11 +33,14 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
   const chip = useSignal<Reason | null>(null);
   const words = useSignal("");
   const busy = useSignal(false);
-  const refused = useSignal("");
+  const refused = useSignal<Phrase | string>("");
   const match = useSignal(desk.court.frame.peek()?.match);
   const close = () => {
-    desk.draft.value = null;
+    if (desk.draft.peek() === draft) desk.draft.value = null; // it may be another one's by now
   };
+  // What is foreseen holds only until the next event.
+  const newest = desk.court.events.value.at(-1)?.number;
+  const foreseen = useSignal(draft.event === undefined);
   const needsReason = NEED_A_REASON.has(draft.name);
   const reason = needsReason ? reasonOfBoth(chip.value, words.value) : "";
   const isOther = match.value !== desk.court.frame.value?.match;
@@ -45,7 +48,8 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
     (isOther && t("ask.otherMatch")) ||
     desk.whyNot(draft.name) ||
     (draft.amount && wrongAmount(draft.amount, amount)) ||
-    (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "");
+    (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "") ||
+    (foreseen.value ? "" : t("ask.trying"));
   const confirm = async () => {
     if (why || busy.value) return;
     busy.value = true;
@@ -63,7 +67,9 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
         }}
       >
         <p>{draft.text}</p>
-        {draft.event !== undefined && <Preview desk={desk} event={draft.event} />}
+        {draft.event !== undefined && (
+          <Preview key={newest} desk={desk} event={draft.event} foreseen={foreseen} />
+        )}
         {draft.winner !== undefined && <Standings desk={desk} winner={draft.winner} />}
         {draft.amount && <AmountField amount={draft.amount} typed={typed} />}
         {GOES_ON.has(draft.name) && !(draft.amount && wrongAmount(draft.amount, amount)) && (
@@ -102,7 +108,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
         )}
         {refused.value && (
           <p class="refused" role="alert">
-            {refused.value}
+            {sentence(refused.value)}
           </p>
         )}
         <div class="dialog-end">
@@ -169,32 +175,45 @@ function AmountField({ amount, typed }: AmountProps) {
   );
 }
 
+interface PreviewProps {
+  desk: Desk;
+  event: number;
+  /** Becomes true with the court's answer: nobody shall confirm what is not shown. */
+  foreseen: Signal<boolean>;
+}
+
 /** What a take-back would do, from the court itself. */
-function Preview({ desk, event }: { desk: Desk; event: number }) {
+function Preview({ desk, event, foreseen }: PreviewProps) {
   const reply = useSignal<DecisionReply | null>(null);
-  const refused = useSignal("");
+  const refused = useSignal<Phrase | string>("");
   useEffect(() => {
-    desk.tryTakeBack(event).then(
-      (found) => {
-        reply.value = found;
-      },
-      (error) => {
-        refused.value = said(reasonOf(error));
-      },
-    );
-  }, [desk, event, reply, refused]);
+    let isWanted = true;
+    foreseen.value = false;
+    const tell = (found: DecisionReply | null, why: Phrase | string = "") => {
+      if (!isWanted) return;
+      reply.value = found;
+      refused.value = why;
+      foreseen.value = true;
+    };
+    desk.tryTakeBack(event).then(tell, (error) => tell(null, reasonOf(error)));
+    return () => {
+      isWanted = false;
+    };
+  }, [desk, event, foreseen, reply, refused]);
   const entry = desk.court.events.value.find(({ number }) => number === event);
-  const now = desk.court.frame.peek()?.seats.map((seat) => seat.score) ?? [];
+  const now = useComputed(
+    () => desk.court.frame.value?.seats.map((seat) => seat.score).join(" : ") ?? "",
+  ).value;
   return (
     <div class="preview" aria-live="polite">
       {entry && <blockquote>{said(entry.said)}</blockquote>}
-      {refused.value && <p class="refused">{refused.value}</p>}
+      {refused.value && <p class="refused">{said(refused.value)}</p>}
       {!reply.value && !refused.value && <p class="muted">{t("ask.trying")}</p>}
       {reply.value && (
         <>
           <dl class="scores">
             <dt>{t("ask.scoreNow")}</dt>
-            <dd>{now.join(" : ")}</dd>
+            <dd>{now}</dd>
             <dt>{t("ask.scoreThen")}</dt>
             <dd class="then">{reply.value.scores.join(" : ")}</dd>
           </dl>

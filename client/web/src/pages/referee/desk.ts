@@ -7,6 +7,7 @@ import type { Court } from "../../core/court";
 import { part, phaseOf } from "../../core/match";
 import type { Phrase } from "../../core/phrase";
 import { remembered } from "../../core/settings";
+import { tab } from "../../core/storage";
 import {
   type Decision,
   type DecisionName,
@@ -26,7 +27,7 @@ const FOR_HALTS = new Set<DecisionName>(["take-back", "restart", "freeze", "set"
 /** The court's newest answer to a decision: done, refused, or no answer. */
 export interface Answer {
   tone: "yes" | "no" | "plain";
-  text: string;
+  what: Phrase | string;
   /** When it came, by `performance.now()`. */
   atMs: number;
 }
@@ -56,7 +57,10 @@ export class Desk {
   readonly busy = signal(false);
   /** Why entering failed; "" if it did not. */
   readonly refused = signal<Phrase | string>("");
-  readonly by = remembered("referee.name", "");
+  /** Kept beside the token, for this tab alone: another tab may be another referee's. */
+  readonly by = remembered("referee.name", "", tab);
+  /** The name that the card offers: the last one that entered in this browser. */
+  readonly lastName = remembered("referee.name", "");
   readonly answer = signal<Answer | null>(null);
   /** Whether this page may decide now. */
   readonly mine: ReadonlySignal<boolean>;
@@ -71,6 +75,8 @@ export class Desk {
   private readonly since = signal<readonly [match: number, beat: number]>([0, 0]);
   private readonly flagsOf: ReadonlySignal<number>[] = [];
   private justTaken: Step | null = null;
+  /** False once another referee's page acted: after a break this page leaves it to that one. */
+  private acts = true;
 
   constructor(readonly court: Court) {
     this.mine = computed(() => this.entered.value && court.referee.value?.mine === true);
@@ -105,6 +111,10 @@ export class Desk {
     effect(() => {
       if (!court.connection.state.value.open) this.entered.value = false;
     });
+    effect(() => {
+      const state = court.referee.value;
+      if (this.entered.value && state?.acting) this.acts = state.mine;
+    });
     // A new connection, also after a reload, sits down again with the tab's token.
     effect(() => {
       const token = ownToken();
@@ -115,12 +125,12 @@ export class Desk {
   }
 
   /** Show a token; kept for this tab if the court takes it. */
-  async enter(token: string, by: string): Promise<void> {
+  async enter(token: string, by: string, acts = true): Promise<void> {
     this.busy.value = true;
     this.refused.value = "";
-    this.by.value = by;
+    this.by.value = this.lastName.value = by;
     try {
-      await this.court.ask("enter", { token, by });
+      await this.court.ask("enter", { token, by, acts });
       keepToken(token);
       this.entered.value = true;
     } catch (error) {
@@ -149,10 +159,10 @@ export class Desk {
   /**
    * Decide.
    *
-   * @returns Why it can be changed and asked again, in the reader's language; "" once it is done,
-   *   and where the answer was lost: to ask again could do it twice.
+   * @returns Why it can be changed and asked again; "" once it is done, and where the answer was
+   *   lost: to ask again could do it twice.
    */
-  async decide(decision: Decision, reason: Phrase | string): Promise<string> {
+  async decide(decision: Decision, reason: Phrase | string): Promise<Phrase | string> {
     try {
       const reply = await this.court.ask<DecisionReply>("decide", { decision, reason });
       this.say("yes", reply.said);
@@ -162,7 +172,9 @@ export class Desk {
         this.say("plain", t("referee.unanswered"));
         return "";
       }
-      return this.say("no", reasonOf(error));
+      const why = reasonOf(error);
+      this.say("no", why);
+      return why;
     }
   }
 
@@ -237,7 +249,7 @@ export class Desk {
   }
 
   private async again(token: string): Promise<void> {
-    await this.enter(token, this.by.peek());
+    await this.enter(token, this.by.peek(), this.acts);
     if (this.entered.peek() || ownToken() !== token) return;
     setTimeout(() => {
       const open = this.court.connection.state.peek().open;
@@ -245,11 +257,9 @@ export class Desk {
     }, RETRY_MS);
   }
 
-  private say(tone: Answer["tone"], what: Phrase | string): string {
-    const text = sentence(what);
-    this.answer.value = { tone, text, atMs: performance.now() };
-    toast(text, tone);
-    return text;
+  private say(tone: Answer["tone"], what: Phrase | string): void {
+    this.answer.value = { tone, what, atMs: performance.now() };
+    toast(() => sentence(what), tone);
   }
 }
 

@@ -1,6 +1,7 @@
 /** Sitting down at the desk, and who sits there. */
 
 import { useSignal } from "@preact/signals";
+import { useEffect } from "preact/hooks";
 import { ownToken } from "../../core/address";
 import { said, t } from "../../i18n";
 import { Dialog } from "../../ui/dialog";
@@ -9,7 +10,7 @@ import type { Desk } from "./desk";
 /** Asks for name and token; nothing once the court has taken them. */
 export function EnterCard({ desk }: { desk: Desk }) {
   const token = useSignal(ownToken() ?? ""); // a referee's link has it
-  const name = useSignal(desk.by.value);
+  const name = useSignal(desk.by.value || desk.lastName.value);
   const welcome = desk.court.welcome.value;
   if (!welcome || desk.entered.value) return null;
   const refused = desk.refused.value;
@@ -68,10 +69,14 @@ export function EnterCard({ desk }: { desk: Desk }) {
 
 /** Who acts, and the way to act oneself; nothing before one has entered. */
 export function ActingBar({ desk }: { desk: Desk }) {
-  const asking = useSignal(false);
+  /** Whom the open question is about; "" while none is open. */
+  const asking = useSignal("");
   const state = desk.court.referee.value;
+  const acting = (desk.entered.value && state?.acting) || "";
+  useEffect(() => {
+    asking.value = ""; // a question about somebody else is over
+  }, [acting]);
   if (!desk.entered.value || !state) return null;
-  const { acting } = state;
   if (desk.mine.value) {
     return (
       <div class="acting mine">
@@ -100,26 +105,26 @@ export function ActingBar({ desk }: { desk: Desk }) {
         class="button strong"
         type="button"
         onClick={() => {
-          if (acting) asking.value = true;
+          if (acting) asking.value = acting;
           else desk.takeOver();
         }}
       >
         {t("referee.takeOver")}
       </button>
-      {asking.value && acting && (
+      {asking.value && (
         <Dialog
-          title={t("referee.takeOverTitle", { name: acting })}
+          title={t("referee.takeOverTitle", { name: asking.value })}
           onClose={() => {
-            asking.value = false;
+            asking.value = "";
           }}
         >
-          <p>{t("referee.takeOverText", { name: acting })}</p>
+          <p>{t("referee.takeOverText", { name: asking.value })}</p>
           <div class="dialog-end">
             <button
               class="button strong"
               type="button"
               onClick={() => {
-                asking.value = false;
+                asking.value = "";
                 desk.takeOver();
               }}
             >

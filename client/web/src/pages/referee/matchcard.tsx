@@ -5,7 +5,7 @@ import { useEffect, useMemo } from "preact/hooks";
 import { part } from "../../core/match";
 import { whyHalted } from "../../core/rulings";
 import { type DecisionName, Phase, SeatFlag } from "../../core/wire";
-import { type MessageName, said, t } from "../../i18n";
+import { type MessageName, said, sentence, t } from "../../i18n";
 import { seatName, team } from "../../i18n/words";
 import { Kbd } from "../../ui/kbd";
 import { Hint, PhaseWord, SeatMark } from "../../ui/score";
@@ -142,7 +142,7 @@ function LastAnswer({ desk }: { desk: Desk }) {
       <strong>
         {mark} {t(word)}
       </strong>{" "}
-      {answer.text} <small class="muted">{t("referee.ago", { seconds })}</small>
+      {sentence(answer.what)} <small class="muted">{t("referee.ago", { seconds })}</small>
     </p>
   );
 }

@@ -1,6 +1,7 @@
 /** What would happen if play went on: the court lets a copy of the match go on, nothing changes. */
 
 import { useSignal } from "@preact/signals";
+import type { Phrase } from "../../core/phrase";
 import { BEATS_PER_S, type Decision, type Outlook as Found, Phase } from "../../core/wire";
 import { said, t } from "../../i18n";
 import { type Desk, reasonOf } from "./desk";
@@ -14,7 +15,7 @@ interface Props {
 type State = { is: "unasked" } | { is: "asked" } | { is: "told"; found: Found } | Refusal;
 interface Refusal {
   is: "refused";
-  why: string;
+  why: Phrase | string;
 }
 
 /** A button that asks, and the court's answer below it; only during a halt. */
@@ -32,7 +33,7 @@ function Asking({ desk, decision }: Props) {
     try {
       state.value = { is: "told", found: await desk.lookAhead(decision) };
     } catch (error) {
-      state.value = { is: "refused", why: said(reasonOf(error)) };
+      state.value = { is: "refused", why: reasonOf(error) };
     }
   };
   const now = state.value;
@@ -44,7 +45,7 @@ function Asking({ desk, decision }: Props) {
         </button>
       )}
       {now.is === "asked" && <p class="muted">{t("outlook.playing")}</p>}
-      {now.is === "refused" && <p class="refused">{now.why}</p>}
+      {now.is === "refused" && <p class="refused">{said(now.why)}</p>}
       {now.is === "told" && <Told found={now.found} />}
     </div>
   );
