@@ -24,6 +24,7 @@ from lacoc_client.workshop.classroom.groups.group_state import MEMBERS_MOST, Gro
 from lacoc_client.workshop.classroom.groups.group_tables import OF_GROUP
 from lacoc_client.workshop.classroom.kept import student_files
 from lacoc_client.workshop.design.requests import GroupAsk, Hello
+from lacoc_client.workshop.design.table import FileTable
 from lacoc_client.workshop.phases.class_file import ClassFile, Document
 from lacoc_client.workshop.phases.evidence import JoinedClass
 from lacoc_client.workshop.tables.document import document_of
@@ -31,6 +32,11 @@ from lacoc_client.workshop.tables.entries import Entry
 from lacoc_shared.mistakes import UserError
 
 __all__ = ["closing", "room", "teacher"]
+
+MADE: dict[str, Entry] = {"shape": "p6", "p6/1.0": True}
+MADE |= {f"p6/1.0/{joint}": float(joint) for joint in range(18)}
+"""A table of postures with one row."""
+FLAT = FileTable(kind="postures", legs=6, rows=())
 
 
 def test_a_group_has_four_members_at_most() -> None:
@@ -239,6 +245,57 @@ def test_students_who_move_at_the_same_time_are_in_one_group_each(tmp_path: Path
             assert ann.table.name == groups.find("Crabs").id
 
     run_async(move)
+
+
+def test_what_a_group_made_stays_for_who_comes_back(tmp_path: Path) -> None:
+    """Also over a restart, in the export, until the last member is forgotten."""
+
+    async def leave() -> None:
+        async with class_of(tmp_path, "Ann", "Ben") as room:
+            ann, ben = room.students.values()
+            for one in (ann, ben):
+                await room.groups.join(one, "Ants")
+            table = room.groups._tables[room.groups.find("Ants").id]
+            table.replace(document_of(MADE))
+            await table.keep_now()
+            await room.groups.leave(ben)
+            await room.groups.leave(ann)
+            await room.groups.join(ann, "Bees")
+            await room.groups.leave(ann)  # in Bees nothing was made
+            assert [one.name for one in room.groups.states.values()] == ["Ants"]
+            assert room.groups.drafts() == {}, "nobody would play with it"
+        async with class_of(tmp_path) as again:
+            ann, ben = (again.find(name) for name in ("Ann", "Ben"))
+            assert "Ants" in {one.student for one in student_files(await again.documents())}
+            await again.groups.join(ben, "ants")
+            assert MADE.items() <= ben.table._document.entries.items()
+            await again.groups.leave(ben)
+            await again.forget(ann)
+            assert again.groups.find("Ants")
+            await again.forget(ben)
+            assert again.groups.states == {}
+            owners = {one.student[:6] for one in await again.documents()}
+            assert OF_GROUP not in owners
+
+    run_async(leave)
+
+
+def test_what_one_member_took_is_offered_to_no_other(tmp_path: Path) -> None:
+    """The table is all members' own; whoever comes later is not asked either."""
+
+    async def take() -> None:
+        async with class_of(tmp_path, "Ann", "Ben") as room:
+            ann, ben = room.students.values()
+            for one in (ann, ben):
+                await room.groups.join(one, "Ants")
+            await room.hand_out("A gait", FLAT, None)
+            await room.group(ann, GroupAsk(id=0, act="take", number=99))
+            assert room.groups.find("Ants").taken == 1
+            assert b"\xa5taken\x01" in room.groups.message(ben)
+            await room.hand_out("Another", FLAT, None, "Ants")
+            assert room.groups.find("Ants").taken == 1
+
+    run_async(take)
 
 
 def test_a_forgotten_student_s_proposals_go_from_all_tables(tmp_path: Path) -> None:

@@ -14,9 +14,11 @@ from lacoc_client.workshop.phases.evidence import (
     CheckedGait,
     Coached,
     Compared,
+    Edited,
     Evidence,
     Guessed,
     Hand,
+    LegEdit,
     Named,
     Rows,
     TookStep,
@@ -29,6 +31,8 @@ from lacoc_client.workshop.phases.evidence import (
 from lacoc_client.workshop.phases.facts import TrialFacts, differences
 from lacoc_client.workshop.phases.phases import CREATIVE, PHASES, THREE_LEGS
 from lacoc_client.workshop.phases.progress import progress
+from lacoc_client.workshop.phases.proof.numbers import foot_guesses
+from lacoc_client.workshop.phases.proof.questions import seam_question
 from lacoc_shared.gait.tables import SAMPLE_KEYS, Posture, PostureTable, to_locomotion
 from lacoc_shared.words import faults, render
 
@@ -117,6 +121,48 @@ def test_phase_1_needs_postures_of_one_leg_and_right_guesses(sample: Sample) -> 
     assert progress([*evidence, ANSWER]).states == ("open", "met", *["open"] * 5)
 
 
+def test_there_is_always_a_move_to_guess() -> None:
+    """Whoever has seen all moves may guess any that is not one of the last six."""
+    nudges = [
+        LegEdit(1, 0, leg, (0, 1, 2), (angle,) * 3, (30.0 - angle,) * 3)
+        for angle in (30.0, 0.0)
+        for leg in range(6)
+    ]
+    all_seen = Edited(version="1", by="hand", legs=tuple(nudges))
+    right = Guessed(about="foot", said="up", was=("up",), after_deg=30.0, of_legs=6)
+    guesses = [
+        msgspec.structs.replace(right, leg=leg, level=level)
+        for level in (0, 1, 2)
+        for leg in range(3)
+    ]
+    assert foot_guesses([all_seen, *guesses]) == guesses
+    assert foot_guesses([all_seen, *guesses[:6], *guesses[:6]]) == guesses[:6]
+    small = msgspec.structs.replace(guesses[0], after_deg=5.0)
+    assert foot_guesses([small, guesses[0]]) == guesses[:1]
+
+
+@pytest.mark.parametrize(
+    ("rows", "turn", "name", "right"),
+    [
+        (range(1, 5), 0, "seam", "from row 4 to row 1"),
+        (range(1, 5), 1, "half", "row 3"),
+        (range(1, 21), 0, "seam", "from row 20 to row 1"),
+        (range(1, 21), 1, "half", "row 11"),
+        (range(1, 6), 1, "seam", "from row 5 to row 1"),
+        ((1, 2, 1, 2), 1, "seam", "from row 2 to row 1"),
+    ],
+)
+def test_phase_4_asks_what_has_an_answer(
+    try_gait: Tries, sample: Sample, rows: Sequence[int], turn: int, name: str, right: str
+) -> None:
+    """A cycle of many rows has few choices; only an even one is asked for its half."""
+    trial = Tried(version="1", facts=try_gait(sample, "B1", 1.0), rows=tuple(rows))
+    asked = seam_question([trial], turn)
+    assert asked.name == name
+    assert [render(asked.choices[at]) for at in asked.right] == [right]
+    assert len(set(asked.choices)) == len(asked.choices) <= 6
+
+
 def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
     """Phase 2 needs a trial on three feet, of a posture that the student typed in the phase."""
     start = standing(sample, range(5))
@@ -133,6 +179,9 @@ def test_phase_2_needs_an_own_tripod(try_gait: Tries, sample: Sample) -> None:
         "phases.more-numbers",
         "phases.foreign",
     }
+    pasted = [go, edit(start, own, "paste"), on_three]
+    lacks = {one.code: render(one) for one in THREE_LEGS.look(pasted)[0].missing}
+    assert " in row 1, " in lacks["phases.foreign"]
     assert codes([made, go, on_three], 2) == {"phases.more-numbers"}
     assert codes([go, on_three, made], 2) == {"phases.more-numbers", "phases.foreign"}
     assert codes([go, made, on_three], 2) == {"phases.answer"}

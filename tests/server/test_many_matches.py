@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 from waiting import LIMIT_S
 
 import lacoc
-from lacoc_server.commands.simulate import app, simulate_command
+from lacoc_server.commands.simulate import _pairs, app, simulate_command
 from lacoc_shared.mistakes import FileRefused, UserError
 from lacoc_shared.record.reader import Record
 
@@ -70,6 +70,8 @@ def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
     assert [(line["kind"], line["done"]) for line in tables] == [
         ("standings", number) for number in (1, 2, 3)
     ]
+    ranks = [line["rank"] for line in tables[-1]["standings"]]
+    assert (ranks[0], ranks) == (1, sorted(ranks))
     last = {line["name"]: line for line in tables[-1]["standings"]}
     assert last.keys() == {anna, ben, dai}
     assert all(line["won"] + line["drawn"] + line["lost"] == 2 for line in last.values())
@@ -128,6 +130,19 @@ def test_a_robot_that_falls_is_left_out(tmp_path: Path, capsys: pytest.CaptureFi
     assert f"left out, because they can't play: {chie}" in said.err
     assert "leans" in said.err
     assert "chie" not in said.out
+
+
+@pytest.mark.parametrize("players", range(2, 10))
+@pytest.mark.parametrize("rounds", range(1, 9))
+def test_all_players_meet_equally_many(players: int, rounds: int) -> None:
+    """With --rounds nobody has more matches than others, and the seats differ by at most one."""
+    pairs = _pairs(players, 2, False, rounds)
+    often = Counter(one for pair in pairs for one in pair)
+    if rounds < players or players % 2 == 0:
+        assert set(often.values()) == {rounds + players % 2 * rounds % 2}
+        assert len({*map(frozenset, pairs)}) == min(len(pairs), players * (players - 1) // 2)
+    left = Counter(pair[0] for pair in pairs)
+    assert all(abs(2 * left[one] - often[one]) <= 1 for one in range(players))
 
 
 def test_rounds_are_for_two_seats() -> None:

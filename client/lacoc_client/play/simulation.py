@@ -20,6 +20,8 @@ class PlayerStanding(msgspec.Struct, frozen=True, kw_only=True):
     """How many matches a player has won, drawn and lost so far."""
 
     name: str
+    rank: int
+    """Place from 1; players who are equal share it."""
     won: int
     drawn: int
     lost: int

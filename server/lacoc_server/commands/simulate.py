@@ -75,7 +75,7 @@ def simulate_command(
         typer.Option(
             metavar="N",
             help="Each player meets N others instead of all of them, in both seats as evenly as "
-            "possible. With an odd number of players, one rests in each round.",
+            "possible. If both numbers are odd, each meets one more.",
             min=1,
         ),
     ] = None,
@@ -283,10 +283,16 @@ def _matches(
 def _pairs(
     players: int, seats: int, both_sides: bool, rounds: int | None
 ) -> Sequence[tuple[int, ...]]:
-    if rounds is not None:
-        pairs: Sequence[tuple[int, ...]] = [
-            pair for number in range(rounds) for pair in circle_round(players, number)
+    pairs: Sequence[tuple[int, ...]]
+    if rounds is not None and players % 2 and rounds < players:
+        # Each plays one to the right and one to the left of it, so nobody rests more than others.
+        pairs = [
+            (index, (index + apart) % players)
+            for apart in range(1, (rounds + 1) // 2 + 1)
+            for index in range(players)
         ]
+    elif rounds is not None:
+        pairs = [pair for number in range(rounds) for pair in circle_round(players, number)]
     elif seats == 1:
         return [(index,) for index in range(players)]
     elif players > seats:
@@ -339,6 +345,7 @@ def _standings_line(
         {
             "name": row.team,
             "team": teams[row.team],
+            "rank": row.rank,
             "won": row.won,
             "drawn": row.drawn,
             "lost": row.lost,

@@ -198,6 +198,8 @@ class Classroom:
             case "word":
                 await self.groups.vote(student, asked.text)
                 student.tell()
+            case "take":
+                await self.groups.take(student, min(asked.number, self.state.handed_count))
 
     def sample(self) -> FileContent:
         """Return the sample postures of the class's robot; empty if it has none. May read files."""

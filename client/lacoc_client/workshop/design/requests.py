@@ -227,11 +227,13 @@ class VoteAsk(Ask, frozen=True, kw_only=True, tag="vote"):
 
 
 class GroupAsk(Ask, frozen=True, kw_only=True, tag="group"):
-    """Join or make a group, leave it, take a role, or vote for a word."""
+    """Join or make a group, leave it, take a role, vote for a word, or take what was handed out."""
 
-    act: Literal["join", "leave", "role", "word"]
+    act: Literal["join", "leave", "role", "word", "take"]
     text: Annotated[str, msgspec.Meta(max_length=40)] = ""
     """Name of the group, the role ("forward", "turn" or ""), or the word."""
+    number: int = 0
+    """With "take": number of the handed-out table that the group has now."""
 
 
 class HandAsk(Ask, frozen=True, kw_only=True, tag="hand"):

@@ -103,6 +103,10 @@ class SharedTable:
         """
         return self._newest_draft() if self.is_touched else None
 
+    def equals(self, other: "SharedTable") -> bool:
+        """Return whether another table has the same entries."""
+        return self._document.entries == other._document.entries
+
     def opened(self) -> dict[str, Any]:
         """Return everything that a page needs to show and edit this table."""
         return {

@@ -635,6 +635,7 @@ export interface ClassMatch {
 
 export interface PlayerStanding {
   name: string;
+  rank: number;
   won: number;
   drawn: number;
   lost: number;

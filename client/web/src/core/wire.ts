@@ -227,6 +227,8 @@ export interface GroupNews {
     word: string;
     /** The word for which this student has voted; "": none. */
     voted: string;
+    /** Number of the newest handed-out table that a member has taken for all. */
+    taken: number;
   } | null;
 }
 

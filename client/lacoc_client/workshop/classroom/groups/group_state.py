@@ -43,6 +43,10 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
     """The word for which each member has voted, by nickname."""
     handed: Handed | None = None
     """The last table that the teacher handed out to this group."""
+    taken: int = 0
+    """Number of the newest handed-out table that a member has taken for all."""
+    last: str = ""
+    """Nickname of the member who left last; "": the group has members."""
 
     def joined(self, member: str) -> "GroupState":
         """Return the group after a student has joined it.
@@ -54,13 +58,15 @@ class GroupState(msgspec.Struct, frozen=True, kw_only=True):
             return self
         if len(self.members) >= MEMBERS_MOST:
             raise UserError(say("groups.full", name=self.name, most=MEMBERS_MOST))
-        return msgspec.structs.replace(self, members=(*self.members, member))
+        return msgspec.structs.replace(self, members=(*self.members, member), last="")
 
     def left(self, member: str) -> "GroupState":
         """Return the group after a member has left it; the words that the member proposed stay."""
+        members = tuple(one for one in self.members if one != member)
         return msgspec.structs.replace(
             self,
-            members=tuple(one for one in self.members if one != member),
+            members=members,
+            last="" if members else member,
             roles={name: role for name, role in self.roles.items() if name != member},
             votes={name: word for name, word in self.votes.items() if name != member},
             words=tuple(

@@ -69,7 +69,7 @@ class Groups:
             lost = [name for name in state.members if same_name(name) not in self._students]
             for name in lost:
                 state = state.left(name)
-            if state.members:
+            if state.members or same_name(state.last) in self._students:
                 self.states[state.id] = state
                 gone[state.id] = lost
         await self._tables.begin(documents, gone)
@@ -94,8 +94,12 @@ class Groups:
         raise UserError(say("groups.none", name=name))
 
     def drafts(self) -> dict[str, Draft]:
-        """Return the newest table of each group that has one, by the name of the group."""
-        return {self.states[id_].name: one for id_, one in self._tables.drafts().items()}
+        """Return the newest table of each group with members, by the name of the group.
+
+        A group without a table is left out.
+        """
+        drafts = self._tables.drafts().items()
+        return {self.states[id_].name: one for id_, one in drafts if self.states[id_].members}
 
     async def join(self, student: ClassStudent, name: str) -> None:
         """Put a student into a group; a new group begins with a copy of the student's table.
@@ -111,7 +115,7 @@ class Groups:
             if self._students.get(same_name(student.name)) is not student:
                 return  # deleted meanwhile
             known = [one for one in self.states.values() if same_name(one.name) == same_name(read)]
-            state = known[0] if known else self._new(read)
+            state = known[0] if known else await self._new(read)
             state.joined(student.name)  # raises an error if the group is full
             if student.name in state.members:
                 return
@@ -128,7 +132,8 @@ class Groups:
     async def leave(self, student: ClassStudent) -> None:
         """Take a student out of the student's group, back to the student's own table.
 
-        A group without members ends.
+        A group without members stays, with its table, for whoever comes back. It ends if nothing
+        was made in it.
         """
         async with self._moving:
             if await self._leave(student):
@@ -143,6 +148,10 @@ class Groups:
             self._own_allowances.pop(student.name, None)
             own = None if (state := self.of(student)) is None else state.id
             has_left = await self._leave(student)
+            for state in [*self.states.values()]:
+                if state.last == student.name:
+                    await self._end(state)
+                    has_left = True
             for id_ in [*self.states]:
                 if id_ == own or self._tables[id_].has_proposals(student.name):
                     await self._tables[id_].forget(student.name)
@@ -172,6 +181,16 @@ class Groups:
         for member in state.members:
             if student := self._students.get(same_name(member)):
                 student.send(handed.message())
+
+    async def take(self, student: ClassStudent, number: int) -> None:
+        """Note that a student has taken a handed-out table for the group: the others are not asked.
+
+        Args:
+            student: a member of a group.
+            number: number of the table.
+        """
+        state = self._own(student)
+        await self._change(msgspec.structs.replace(state, taken=max(state.taken, number)))
 
     def spend(self, student: ClassStudent) -> None:
         """Count a request of a student to change a group.
@@ -207,6 +226,7 @@ class Groups:
                 ],
                 "word": state.word,
                 "voted": state.votes.get(student.name, ""),
+                "taken": state.taken,
             }
         return wire.map_message(MessageKind.GROUP, body)
 
@@ -222,11 +242,14 @@ class Groups:
             raise UserError(say("groups.not-in"))
         return state
 
-    def _new(self, name: str) -> GroupState:
+    async def _new(self, name: str) -> GroupState:
         if any(look_alike(one.name, name) for one in self.states.values()):
             raise UserError(say("groups.alike", name=name))
         if len(self.states) >= GROUPS_MOST:
-            raise UserError(say("groups.too-many", most=GROUPS_MOST))
+            left = next((one for one in self.states.values() if not one.members), None)
+            if left is None:
+                raise UserError(say("groups.too-many", most=GROUPS_MOST))
+            await self._end(left)
         return GroupState(id=new_token(), name=name)
 
     async def _change(self, state: GroupState) -> None:
@@ -240,15 +263,16 @@ class Groups:
         if state is None:
             return False
         student.sit_at(student.own)
-        state = state.left(student.name)
-        if state.members:
-            self.states[state.id] = state
-        else:
-            del self.states[state.id]
-            # First: a table without a group is deleted at the next start, a group needs its table.
-            await self._changed()
-            await self._tables.end(state.id)
+        self.states[state.id] = state = state.left(student.name)
+        if not state.members and self._tables[state.id].equals(student.own):
+            await self._end(state)
         return True
+
+    async def _end(self, state: GroupState) -> None:
+        del self.states[state.id]
+        # First: a table without a group is deleted at the next start, a group needs its table.
+        await self._changed()
+        await self._tables.end(state.id)
 
     async def _tell(self) -> None:
         await self._changed()

@@ -12,10 +12,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from lacoc_client.workshop.phases.evidence import Edited, Evidence, Guessed, LegEdit, Tried
+from lacoc_client.workshop.phases.evidence import (
+    Edited,
+    Evidence,
+    Guessed,
+    LegEdit,
+    Tried,
+    TriedNumber,
+)
 
 NUMBER_DEG = 10.0
 """A number counts if it changes a posture by at least this since the phase began [deg]."""
+RECENT_MOVES = 6
+"""A guess does not count if its move is one of so many that the student has seen last. A robot of
+four legs has 24 moves, so there is always another one to guess."""
 
 _Place = tuple[int, int, int, int]
 """Key, posture, leg and level of a cell."""
@@ -41,8 +51,8 @@ class OwnTrial:
     cell before the first change that counts."""
     made: int
     """How many numbers were made from typed ones, and differ as much as `typed` asks for."""
-    foreign: int
-    """How many numbers are foreign, also those that did not change in this phase."""
+    foreign: tuple[TriedNumber, ...]
+    """The numbers that are foreign, also those that did not change in this phase."""
 
 
 def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
@@ -98,8 +108,9 @@ class _Cells:
                     self._base.setdefault(place, before)
 
     def judge(self, tried: Tried) -> OwnTrial:
-        """Count how many numbers in the rows of a trial are typed, made and foreign."""
-        counts = {"typed": 0, "made": 0, "foreign": 0}
+        """Find which numbers in the rows of a trial are typed, made and foreign."""
+        counts = {"typed": 0, "made": 0}
+        foreign = []
         for number in tried.numbers:
             place = (number.key, number.posture, number.leg, number.level)
             angle = round(number.angle_deg, _DIGITS)
@@ -107,9 +118,11 @@ class _Cells:
             base = self._base.get(place, angle)
             if base is None:
                 base = number.start_deg
-            if source == "foreign" or (source != "given" and is_apart(angle, base)):
+            if source == "foreign":
+                foreign.append(number)
+            elif source != "given" and is_apart(angle, base):
                 counts[source] += 1
-        return OwnTrial(tried, **counts)
+        return OwnTrial(tried, **counts, foreign=tuple(foreign))
 
     def _source(self, edit: Edited, level: int, angle: float) -> _Source:
         if edit.by == "hand":
@@ -148,40 +161,47 @@ def leg_numbers(evidence: Sequence[Evidence]) -> list[LegNumbers]:
 def foot_guesses(evidence: Sequence[Evidence], start: int = 0) -> list[Guessed]:
     """Return, in order, a student's guesses of where a foot goes, without those that don't count.
 
-    A guess counts if one number of one leg was changed by `NUMBER_DEG`, and the student had not
-    seen before where the foot goes if this joint turns in this direction.
+    A guess counts if one number of one leg was changed by `NUMBER_DEG`, and this joint did not turn
+    in this direction in one of the last `RECENT_MOVES` moves that the student has seen.
 
     Args:
         evidence: all evidence of a student, in order.
         start: guesses from this index on are returned.
     """
-    seen: set[_Move] = set()
-    newest: set[_Move] = set()  # what the last edit has shown; its guess comes after it
+    seen: list[_Move] = []
+    newest: list[_Move] = []  # what the last edit has shown; its guess comes after it
     found = []
     for at, one in enumerate(evidence):
         if isinstance(one, Edited):
-            seen |= newest
+            seen = _recent(seen, newest)
             newest = _moves(one)
         elif isinstance(one, Guessed) and one.about == "foot" and one.level >= 0:
             move = (one.leg, one.level, one.after_deg > one.before_deg)
             is_large = is_apart(one.after_deg, one.before_deg)
             if is_large and move not in seen and at >= start:
                 found.append(one)
-            seen |= newest | {move}
+            seen = _recent(seen, [*newest, move] if is_large else newest)
+            newest = []
     return found
 
 
-def _moves(edit: Edited) -> set[_Move]:
+def _recent(seen: list[_Move], more: list[_Move]) -> list[_Move]:
+    """Return the last different moves of both lists, the newest last."""
+    newest_first = dict.fromkeys(reversed([*seen, *more]))
+    return [*newest_first][:RECENT_MOVES][::-1]
+
+
+def _moves(edit: Edited) -> list[_Move]:
     """Return which joints an edit has turned, and in which direction; none if it was not typed."""
     if edit.by != "hand":
-        return set()
-    return {
+        return []
+    return [
         (leg.leg, level, leg.angles_deg[level] > leg.before_deg[level])
         for leg in edit.legs
         if leg.before_deg
         for level in leg.changed
         if _is_turned(leg, level)
-    }
+    ]
 
 
 def _typed_legs(evidence: Sequence[Evidence]) -> list[LegEdit]:

@@ -19,6 +19,8 @@ from lacoc_shared.words import Phrase, say
 _LEVELS = ("Root", "1st", "2nd")
 _LINKS_MM = (15.0, 70.0, 70.0)
 """Lengths of the links of the workshop's robot [mm]."""
+_MOST_CHOICES = 6
+"""Most choices of a question about rows: a page sends the number of a choice as one digit."""
 _FIRST_DEG, _SECOND_DEG = (10, 30, 40, 50), (-35, -20, 20, 35)
 TURNS_DEG_S = 5.0
 """A robot that turns at least this fast counts as turning [deg/s] (docs/studio.md 7)."""
@@ -193,18 +195,19 @@ def seam_question(seen: Sequence[Evidence], turn: int) -> PhaseQuestion:
     trial = _last_trial(seen)
     rows = trial.rows or tuple(range(1, max(2, trial.facts.postures) + 1))
     first, last = rows[0], rows[-1]
-    if turn % 2 == 0:
-        steps = [(last, first), *pairwise(rows)]
+    half = rows[len(rows) // 2]
+    has_half = len(rows) % 2 == 0 and half != first
+    if turn % 2 == 0 or not has_half:
+        steps = [*dict.fromkeys([(last, first), *pairwise(rows)])][:_MOST_CHOICES]
         return _made(
             "seam",
             say("phases.ask-seam", rows=rows),
-            [say("phases.from-row", row=row, to=to) for row, to in dict.fromkeys(steps)],
+            [say("phases.from-row", row=row, to=to) for row, to in steps],
             1,
             say("phases.because-seam", row=last, to=first),
             len(seen),
         )
-    half = rows[len(rows) // 2]
-    others = dict.fromkeys((half, *rows))
+    others = [*dict.fromkeys((half, *rows))][:_MOST_CHOICES]
     return _made(
         "half",
         say("phases.ask-half", rows=rows, row=first),

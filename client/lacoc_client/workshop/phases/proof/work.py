@@ -33,6 +33,8 @@ from lacoc_client.workshop.phases.proof.numbers import (
     leg_numbers,
     own_trials,
 )
+from lacoc_shared.gait.cells import leg_labels
+from lacoc_shared.gait.tables import LEVEL_NAMES
 from lacoc_shared.words import Phrase, say
 
 _TRY = say("phases.try")
@@ -124,7 +126,9 @@ class LegWork:
                     lambda left: say("phases.more-leg-postures", left=left, least_deg=NUMBER_DEG),
                 ),
                 counted(
-                    len(guesses), self.guesses, lambda left: say("phases.more-guesses", left=left)
+                    len(guesses),
+                    self.guesses,
+                    lambda left: say("phases.more-guesses", left=left, least_deg=NUMBER_DEG),
                 ),
                 right.look(guesses),
             ]
@@ -156,8 +160,8 @@ class TrialWork:
         wanted, lacks = (1, _one_more) if again else (self.numbers, self._more_numbers)
         own = one.typed + (one.made if self.tools else 0)
         foreign = Bound(
-            lambda facts: one.foreign,
-            lambda found: say("phases.foreign", count=found),
+            lambda facts: len(one.foreign),
+            lambda found: _foreign(one),
             most=0.0,
         )
         bounds = [bound.look(one.tried.facts) for bound in (foreign, *self.bounds)]
@@ -167,6 +171,15 @@ class TrialWork:
         if not self.tools:
             return _more_numbers(left)
         return say("phases.more-numbers-or-tools", left=left, least_deg=NUMBER_DEG)
+
+
+def _foreign(one: OwnTrial) -> Phrase:
+    """Say how many numbers are foreign, and where the first of them is."""
+    first, facts = one.foreign[0], one.tried.facts
+    row = first.key if facts.keys[-1].startswith("A") else first.posture + 1
+    leg = leg_labels(len(facts.duty))[first.leg]
+    cell = say("explain.row-cell", row=row, leg=leg, level=LEVEL_NAMES[first.level])
+    return say("phases.foreign", count=len(one.foreign), cell=cell, angle_deg=first.angle_deg)
 
 
 @dataclass(frozen=True)

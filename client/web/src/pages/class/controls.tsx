@@ -96,11 +96,7 @@ function HandOut({ teacher }: { teacher: Teacher }) {
     <section aria-label={t("class.handOut")}>
       <h2>{t("class.handOut")}</h2>
       <div class="row">
-        <button
-          class="button"
-          type="button"
-          onClick={() => void teacher.handOut(sample, { group: teacher.recipient.peek() })}
-        >
+        <button class="button" type="button" onClick={() => void teacher.handOut(sample)}>
           {sample}
         </button>
         <input
@@ -209,7 +205,7 @@ function Titled({ teacher, handout }: { teacher: Teacher; handout: Handout }) {
           event.preventDefault();
           const named = title.value.trim() || handout.title;
           close();
-          void teacher.handOut(named, { table, group: teacher.recipient.peek() });
+          void teacher.handOut(named, { table });
         }}
       >
         <p class="muted">

@@ -198,6 +198,7 @@ function Acts({ teacher, card, onClose }: ActsProps) {
       </section>
     );
   }
+  const to = teacher.group.value;
   return (
     <div class="row acts">
       <button
@@ -214,13 +215,13 @@ function Acts({ teacher, card, onClose }: ActsProps) {
       <button
         class="button"
         type="button"
-        title={t("class.act.handOutHint")}
+        title={to ? undefined : t("class.act.handOutHint")}
         onClick={() => {
           onClose();
           void teacher.handOut(t("class.handOut.of", { name }), { student });
         }}
       >
-        {t("class.act.handOut")}
+        {to ? t("class.act.handOutTo", { to: teacher.hide(to) }) : t("class.act.handOut")}
       </button>
       <button
         class="button"

@@ -89,6 +89,10 @@ export class Teacher {
   readonly groups = computed(() => this.state.value?.groups ?? []);
   /** The group to which a table is handed out; "": to all. */
   readonly recipient = signal("");
+  /** The same, but "" also if the group has ended. */
+  readonly group = computed(
+    () => this.groups.value.find(({ name }) => name === this.recipient.value)?.name ?? "",
+  );
   readonly here = computed(() => this.cards.value.filter(({ online }) => online).length);
   readonly hands = computed(
     () => this.cards.value.filter((card) => card.online && card.need === "hand").length,
@@ -110,6 +114,11 @@ export class Teacher {
   /** What a student is called on this page. */
   name(student: string): string {
     return this.projector.value ? this.label(this.robots.value.indexOf(student)) : student;
+  }
+
+  /** What a player of the tournament is called on this page: a student, or a group. */
+  player(name: string): string {
+    return this.card(name) ? this.name(name) : this.hide(name);
   }
 
   /** A text in which no name stands that must not be seen. */
@@ -171,12 +180,9 @@ export class Teacher {
     }
   }
 
-  /** Hand out a table, that of a student, or else the sample. */
-  async handOut(
-    title: string,
-    what: { table?: FileTable; student?: string; group?: string } = {},
-  ): Promise<void> {
-    const group = this.groups.peek().find(({ name }) => name === what.group)?.name ?? "";
+  /** Hand out a table, that of a student, or else the sample, to whom the teacher has chosen. */
+  async handOut(title: string, what: { table?: FileTable; student?: string } = {}): Promise<void> {
+    const group = this.group.peek();
     if ((await this.act("hand_out", { title, ...what, group })) === null) return;
     const to = this.hide(group);
     toast(

@@ -147,10 +147,10 @@ export function Standings({ teacher, big = false }: StandingsProps) {
         </tr>
       </thead>
       <tbody>
-        {standings.map((one, index) => (
+        {standings.map((one) => (
           <tr key={one.name}>
-            <td>{index + 1}</td>
-            <th scope="row">{teacher.name(one.name)}</th>
+            <td>{one.rank}</td>
+            <th scope="row">{teacher.player(one.name)}</th>
             {COLUMNS.map((column) => (
               <td key={column}>{one[column]}</td>
             ))}
@@ -171,7 +171,7 @@ function Left({ teacher, out }: { teacher: Teacher; out: readonly LeftOut[] }) {
           const reason = why ?? mistakes[0]?.found;
           return (
             <li key={name}>
-              <b>{teacher.name(name)}</b> {reason && said(reason)}
+              <b>{teacher.player(name)}</b> {reason && said(reason)}
             </li>
           );
         })}
@@ -194,7 +194,10 @@ function Matches({ teacher, matches }: MatchesProps) {
       {hidden && <p class="muted">{t("class.play.noReplay")}</p>}
       <ol reversed>
         {matches.toReversed().map(({ left, right, scores, winner, record, ...match }, index) => {
-          const [one, other] = [left, right].map((name) => teacher.name(name)) as [string, string];
+          const [one, other] = [left, right].map((name) => teacher.player(name)) as [
+            string,
+            string,
+          ];
           return (
             <li key={matches.length - index}>
               <span class="sides">

@@ -90,7 +90,7 @@ export class Studio {
   readonly group: Group = new Group(this.gateway, this.sheet, this.sharing, this.membership);
   readonly numbers = new Numbers(this.robot, this.files);
   readonly court = new Court(this.gateway, this.sheet, this.robot);
-  readonly handed = new Handed(this.membership, this.files);
+  readonly handed = new Handed(this.membership, this.group, this.files);
   readonly shots = new Shots();
   readonly friend = new Friend(this.gateway, this.sheet, this.robot, this.files, this.trials);
 

@@ -4,19 +4,22 @@ import { computed, signal } from "@preact/signals";
 import type { HandedTable } from "../../../core/wire";
 import { t } from "../../../i18n";
 import type { Files } from "../files/files";
+import type { Group } from "../sharing/group";
 import type { Membership } from "./membership";
 
 export class Handed {
   /** The newest; null: none. */
   readonly newest = signal<HandedTable | null>(null);
-  /** The one that the student has not answered yet; null: none. */
+  /** The one that neither the student nor the group has answered yet; null: none. */
   readonly offered = computed(() => {
     const { value } = this.newest;
-    return value && value.number > this.membership.answered ? value : null;
+    const taken = this.group.news.value?.group?.taken ?? 0;
+    return value && value.number > Math.max(taken, this.membership.answered) ? value : null;
   });
 
   constructor(
     private readonly membership: Membership,
+    private readonly group: Group,
     private readonly files: Files,
   ) {}
 
@@ -24,6 +27,8 @@ export class Handed {
   take({ number, title, table, sequences }: HandedTable): void {
     this.files.take(t("design.step.take", { name: title }), table, sequences, "paste");
     this.membership.answer(number);
+    // The others' work of now would be gone if each of them took it again.
+    if (this.group.news.peek()?.group) void this.group.ask("take", "", number);
   }
 
   /** Go on with one's own table. */

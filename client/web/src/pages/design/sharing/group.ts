@@ -46,10 +46,14 @@ export class Group {
     private readonly membership: Membership,
   ) {}
 
-  /** Ask the gateway to join, leave, take a role or vote for a word. */
-  async ask(act: "join" | "leave" | "role" | "word", text = ""): Promise<void> {
+  /** Ask the gateway to join, leave, take a role, vote for a word or take what was handed out. */
+  async ask(
+    act: "join" | "leave" | "role" | "word" | "take",
+    text = "",
+    number = 0,
+  ): Promise<void> {
     try {
-      await this.gateway.ask("group", { act, text });
+      await this.gateway.ask("group", { act, text, number });
     } catch (error) {
       this.gateway.refuse(error);
     }
