@@ -137,6 +137,7 @@ def test_a_certificate_of_nobody_is_a_problem(tmp_path: Path) -> None:
     ("address", "expected", "status"),
     [
         ("https://no.such.name.invalid", "pages-unknown", Status.PROBLEM),
+        ("https://contest..example.org", "pages-unknown", Status.PROBLEM),
         ("http://127.0.0.1:{port}", "pages-silent", Status.NOTE),
     ],
 )
@@ -144,6 +145,24 @@ def test_an_address_that_leads_nowhere_is_told(address: str, expected: str, stat
     """An unknown name is a problem; before the contest it is normal that nobody answers."""
     public = PublicAddress.of(address.format(port=free_port()))
     assert found(public) == {expected: status}
+
+
+def test_pages_without_the_promised_encryption_are_a_problem() -> None:
+    """A gateway without a certificate behind an address with https:// is no silence."""
+    port = free_port()
+    with gateway(PublicAddress.of(f"http://localhost:{port}"), port):
+        assert found(PublicAddress.of(f"https://localhost:{port}")) == {
+            "pages-garbled": Status.PROBLEM
+        }
+
+
+def test_pages_of_another_program_hold_the_port() -> None:
+    """A class, or another contest, at the port of the pages is told."""
+    port = free_port()
+    assert web_port("a..b", port, needed=True).status is Status.PROBLEM
+    with gateway(PublicAddress.of(f"http://localhost:{port}"), port):
+        for title, status in (("", Status.OK), (TITLE, Status.OK), ("Other Cup", Status.PROBLEM)):
+            assert web_port("127.0.0.1", port, needed=True, title=title).status is status
 
 
 @pytest.mark.parametrize("wrong", ["nothing", "unnamed", "host", "upgrade", "path"])

@@ -107,14 +107,15 @@ def _look(
         for address in entry.listen:
             protocol = address.partition("/")[0]
             yield doctor.court_port(*_host_port(address), name, protocol, authority)
-    yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None)
+    title = plan.given_name if plan else ""
+    yield doctor.web_port(*_host_port(web or _WEB), needed=web is not None, title=title)
     yield doctor.graphics()
     yield doctor.clock(seconds)
     yield doctor.disk(folder)
 
 
 def _host_port(address: str) -> tuple[str, int]:
-    match = _HOST_PORT.match(address)
+    match = _HOST_PORT.fullmatch(re.split("[#?]", address)[0])
     if match is None or int(match["port"]) > 65_535:
         raise UserError(say("command.bad-listen", where=address))
     return match["host"].strip("[]"), int(match["port"])

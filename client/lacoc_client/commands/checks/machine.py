@@ -166,20 +166,24 @@ def court_port(
     return Finding(about, status, say("doctor.court-port", host=host, why=why), todo)
 
 
-def web_port(host: str, port: int, *, needed: bool) -> Finding:
+def web_port(host: str, port: int, *, needed: bool, title: str = "") -> Finding:
     """Check that a port is free for a gateway, or that a gateway already listens there.
 
     Args:
         host: address of this machine to listen at.
         port: the port.
         needed: whether the user named the port; otherwise a taken port is only a note.
+        title: name of the contest whose pages belong here; "": any pages may be there.
     """
     about = say("doctor.port", port=port)
     why: Phrase | str = _why_taken(host, port)
     if not why:
         return Finding(about, Status.OK, say("doctor.port-free-pages", host=host))
-    if any(_is_gateway(f"{scheme}://{_reached(host, port)}") for scheme in ("http", "https")):
-        return Finding(about, Status.OK, say("doctor.pages-run"))
+    urls = [f"{scheme}://{_reached(host, port)}" for scheme in ("http", "https")]
+    if health := next(filter(None, map(_gateway, urls)), None):
+        if not title or health.contest == title:
+            return Finding(about, Status.OK, say("doctor.pages-run"))
+        why = say("doctor.pages-of-other", contest=health.contest or None)
     status = Status.PROBLEM if needed else Status.NOTE
     todo = say("doctor.pages-port-todo")
     return Finding(about, status, say("doctor.pages-port", host=host, why=why), todo)
@@ -196,13 +200,13 @@ def _reached(host: str, port: int) -> str:
     return f"[{here}]:{port}" if ":" in here else f"{here}:{port}"
 
 
-def _is_gateway(url: str) -> bool:
+def _gateway(url: str) -> GatewayHealth | None:
+    """Ask a gateway for its state; None: there is none."""
     try:  # a certificate proves the public name, not this address
         found = fetch(f"{url}/healthz", trusting_all(), _MIB, wait_s=_ASK_S)
-        msgspec.json.decode(found.data, type=GatewayHealth)
+        return msgspec.json.decode(found.data, type=GatewayHealth)
     except (OSError, ValueError):
-        return False
-    return True
+        return None
 
 
 def _why_taken(host: str, port: int) -> str:
@@ -216,6 +220,8 @@ def _why_taken(host: str, port: int) -> str:
             probe.listen()
     except OSError as error:
         return error.strerror or str(error)
+    except UnicodeError as error:  # a name of other form than names of machines have
+        return str(error)
     return ""
 
 

@@ -45,7 +45,7 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
     about = say("doctor.pages", pages=public.pages)
     try:
         socket.getaddrinfo(public.host, None)
-    except OSError:
+    except (OSError, UnicodeError):  # a name of other form than names of machines have
         found = say("doctor.pages-unknown", host=public.host)
         yield Finding(about, Status.PROBLEM, found, say("doctor.pages-unknown-todo"))
         return
@@ -58,6 +58,10 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
         yield Finding(about, Status.PROBLEM, found, say("doctor.pages-not-proven-todo"))
         return
     except (OSError, http.client.HTTPException) as error:
+        if _is_answer(error):
+            found = say("doctor.pages-garbled", why=str(error))
+            yield Finding(about, Status.PROBLEM, found, say("doctor.pages-garbled-todo"))
+            return
         found = say("doctor.pages-silent", why=str(error))
         yield Finding(about, Status.NOTE, found, say("doctor.pages-silent-todo"))
         return
@@ -73,6 +77,13 @@ def pages(public: PublicAddress, title: str) -> Iterator[Finding]:
         return
     yield from _reached(public, title, health)
     yield _websocket(public)
+
+
+def _is_answer(error: Exception) -> bool:
+    """Return whether somebody answered, but encrypted instead of plain or the other way round."""
+    if isinstance(error, ssl.SSLEOFError | ssl.SSLZeroReturnError | http.client.RemoteDisconnected):
+        return False  # it hung up, as a proxy may whose gateway does not run yet
+    return isinstance(error, ssl.SSLError | http.client.HTTPException)
 
 
 def plain_courts(public: PublicAddress, courts: Mapping[str, ContestCourt]) -> Iterator[Finding]:
