@@ -23,7 +23,7 @@ JAPANESE_NAMES = re.compile(
     r"Kim|Ants|Bees|Left|Right|Hexapod|LACOC|Robot-Othello|Ctrl|Enter|main|MuJoCo|lacoc web"
 )
 
-HOLD_ANSWERS = """
+HOLD_MESSAGES = """
 kind => {
   const send = WebSocket.prototype.send;
   WebSocket.prototype.send = function (data) {
@@ -38,7 +38,7 @@ kind => {
   };
 }
 """
-"""Program for a page: from its next request on, it holds back answers until `letGo()`."""
+"""Program for a page: from its next request on, it holds back one kind of message."""
 
 Referee = Callable[..., Page]
 
@@ -653,11 +653,18 @@ def test_a_take_back_is_what_was_shown(court: Venue, referee: Referee) -> None:
         expect(dialog.locator(".then")).to_have_text("18 : 21")
         expect(dialog.locator(".scores dd").first).to_have_text("25 : 21")
         dialog.locator("label.chip", has_text="rule").click()
+        expect(dialog.locator("[type=submit]")).to_be_enabled()
+        page.evaluate(HOLD_MESSAGES, MessageKind.EVENT)
+        page.get_by_role("button", name="and if play went on").click()  # a request
+        expect(dialog.locator(".outlook .preview")).to_be_visible()
         assert adjusted.event is not None
         other.decide(d.TakeBack(adjusted.event), "rule", "Sato")
         dialog.locator("[type=submit]").click()
         expect(dialog.locator("[role=alert]")).to_contain_text("can't be taken back")
-    expect(page.locator(".answer.no")).to_contain_text("can't be taken back")
+        expect(page.locator(".answer.no")).to_contain_text("can't be taken back")
+        page.evaluate("letGo()")
+        expect(dialog.locator(".why")).to_contain_text("can't be taken back")
+        expect(dialog.locator("[type=submit]")).to_be_disabled()
 
 
 @pytest.mark.long
@@ -667,7 +674,7 @@ def test_an_answer_closes_only_its_own_dialog(court: Venue, referee: Referee) ->
     to_playing(page, court)
     step(page)
     phase(page, 5)
-    page.evaluate(HOLD_ANSWERS, MessageKind.REPLY)
+    page.evaluate(HOLD_MESSAGES, MessageKind.REPLY)
     seat(page, 0, "Score ±").click()
     dialog = page.get_by_role("dialog")
     dialog.locator("label.chip", has_text="rule").click()
@@ -862,6 +869,7 @@ def test_the_longest_name_fits_a_phone(court: Venue, referee: Referee) -> None:
     assert dialog.evaluate("it => it.scrollWidth <= it.clientWidth")
     page.keyboard.press("Escape")
     disc(page, "c3r3").click()
+    expect(page.locator(".pick .close")).to_be_in_viewport(ratio=1)
     choices = page.locator(".pick .states .act").all()
     assert all(choice.evaluate("it => it.scrollWidth <= it.clientWidth") for choice in choices)
 

@@ -276,7 +276,9 @@ def test_a_match_that_the_event_had_ended_goes_on() -> None:
     """If the event that ended the match is taken back, the match is HALTED and can be resumed."""
     stage = flag_strike(ALL_FOUR)
     assert (stage.phase, stage.match.ticks) == (P.FINISHED, 40)
-    reply = take_back(stage, event(stage, "capture", "corner3").number)
+    number = event(stage, "capture", "corner3").number
+    assert take_back(stage, number, dry_run=True).changes[-1] == say("change.goes-on")
+    reply = take_back(stage, number)
     assert stage.phase is P.HALTED
     assert reply.scores == (15, 0)
     result = stage.beats[-1].result
@@ -307,6 +309,8 @@ def test_a_match_may_turn_out_to_have_been_over() -> None:
     stage = flag_strike(walks, {60: {RIGHT: (22,)}})
     assert (stage.phase, stage.scores) == (P.HALTED, (15, 10))
     retaken = event(stage, "capture", "corner0").number
+    dry = take_back(stage, retaken, dry_run=True)
+    assert dry.changes[-1] == say("change.ends", why=say("over.all-corners", seat="left"))
     reply = take_back(stage, retaken)
     assert stage.phase is P.FINISHED
     assert stage.match.ended == say("over.all-corners", seat="left")

@@ -301,7 +301,7 @@ def _take_back(match: MatchState, item: Decide, decision: d.TakeBack) -> Decisio
         struck = _struck(match, decision.event)
         scores = match.scores(fold.state)
         vanished = [number for number, _ in fold.vanished]
-        changes = _changes(fold)
+        changes = (*_changes(fold), *_phase_after(match, fold.over))
     else:
         raise Illegal(say("why.can-not-take-back", event=decision.event))
     did = say("decision.took-back", what=struck, score=_score(match, scores))
@@ -339,6 +339,19 @@ def _changes(fold: Fold) -> tuple[Phrase, ...]:
     return (*vanished, *appeared)
 
 
+def _phase_after(match: MatchState, over: Phrase | None) -> tuple[Phrase, ...]:
+    """Say whether a take-back ends the match or lets it go on, as `_follow` does."""
+    if match.phase is Phase.HALTED and over:
+        return (say("change.ends", why=over),)
+    if match.phase is Phase.FINISHED and _goes_on(match, over):
+        return (say("change.goes-on"),)
+    return ()
+
+
+def _goes_on(match: MatchState, over: Phrase | None) -> bool:
+    return not (over or match.time_is_up or match.declared)
+
+
 def _follow(match: MatchState, over: Phrase | None) -> None:
     """Change the phase after a take-back or a change of the clock, if the game requires it.
 
@@ -348,7 +361,7 @@ def _follow(match: MatchState, over: Phrase | None) -> None:
     """
     if match.phase is Phase.HALTED and over:
         match.finish(over)
-    elif match.phase is Phase.FINISHED and not (over or match.time_is_up or match.declared):
+    elif match.phase is Phase.FINISHED and _goes_on(match, over):
         match.ended = None
         match.enter(Phase.HALTED)
     elif match.phase is Phase.FINISHED and not match.declared:

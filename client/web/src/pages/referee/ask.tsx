@@ -1,7 +1,7 @@
 /** The dialog before a decision: what it does, its number, its reason, and the confirmation. */
 
 import { type Signal, useComputed, useSignal } from "@preact/signals";
-import { useEffect } from "preact/hooks";
+import { useLayoutEffect } from "preact/hooks";
 import type { Phrase } from "../../core/phrase";
 import { type DecisionName, type DecisionReply, NEED_A_REASON } from "../../core/wire";
 import { said, sentence, t } from "../../i18n";
@@ -40,7 +40,8 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
   };
   // What is foreseen holds only until the next event.
   const newest = desk.court.events.value.at(-1)?.number;
-  const foreseen = useSignal(draft.event === undefined);
+  const isOpen = desk.court.connection.state.value.open;
+  const unforeseen = useSignal<Phrase | string>("");
   const needsReason = NEED_A_REASON.has(draft.name);
   const reason = needsReason ? reasonOfBoth(chip.value, words.value) : "";
   const isOther = match.value !== desk.court.frame.value?.match;
@@ -49,7 +50,7 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
     desk.whyNot(draft.name) ||
     (draft.amount && wrongAmount(draft.amount, amount)) ||
     (needsReason && !reason ? t(chip.value ? "ask.needWords" : "ask.needReason") : "") ||
-    (foreseen.value ? "" : t("ask.trying"));
+    said(unforeseen.value);
   const confirm = async () => {
     if (why || busy.value) return;
     busy.value = true;
@@ -68,7 +69,12 @@ function Ask({ desk, draft }: { desk: Desk; draft: Draft }) {
       >
         <p>{draft.text}</p>
         {draft.event !== undefined && (
-          <Preview key={newest} desk={desk} event={draft.event} foreseen={foreseen} />
+          <Preview
+            key={`${newest} ${isOpen}`}
+            desk={desk}
+            event={draft.event}
+            unforeseen={unforeseen}
+          />
         )}
         {draft.winner !== undefined && <Standings desk={desk} winner={draft.winner} />}
         {draft.amount && <AmountField amount={draft.amount} typed={typed} />}
@@ -178,28 +184,30 @@ function AmountField({ amount, typed }: AmountProps) {
 interface PreviewProps {
   desk: Desk;
   event: number;
-  /** Becomes true with the court's answer: nobody shall confirm what is not shown. */
-  foreseen: Signal<boolean>;
+  /** Why nobody shall confirm yet: the court's answer is not there, or it refuses; "" if it is. */
+  unforeseen: Signal<Phrase | string>;
 }
 
 /** What a take-back would do, from the court itself. */
-function Preview({ desk, event, foreseen }: PreviewProps) {
+function Preview({ desk, event, unforeseen }: PreviewProps) {
   const reply = useSignal<DecisionReply | null>(null);
-  const refused = useSignal<Phrase | string>("");
-  useEffect(() => {
+  useLayoutEffect(() => {
     let isWanted = true;
-    foreseen.value = false;
-    const tell = (found: DecisionReply | null, why: Phrase | string = "") => {
+    unforeseen.value = { code: "ask.trying" };
+    const tell = (found: DecisionReply | null, why: Phrase | string) => {
       if (!isWanted) return;
       reply.value = found;
-      refused.value = why;
-      foreseen.value = true;
+      unforeseen.value = why;
     };
-    desk.tryTakeBack(event).then(tell, (error) => tell(null, reasonOf(error)));
+    desk.tryTakeBack(event).then(
+      (found) => tell(found, ""),
+      (error) => tell(null, reasonOf(error)),
+    );
     return () => {
       isWanted = false;
+      unforeseen.value = "";
     };
-  }, [desk, event, foreseen, reply, refused]);
+  }, [desk, event, unforeseen, reply]);
   const entry = desk.court.events.value.find(({ number }) => number === event);
   const now = useComputed(
     () => desk.court.frame.value?.seats.map((seat) => seat.score).join(" : ") ?? "",
@@ -207,8 +215,6 @@ function Preview({ desk, event, foreseen }: PreviewProps) {
   return (
     <div class="preview" aria-live="polite">
       {entry && <blockquote>{said(entry.said)}</blockquote>}
-      {refused.value && <p class="refused">{said(refused.value)}</p>}
-      {!reply.value && !refused.value && <p class="muted">{t("ask.trying")}</p>}
       {reply.value && (
         <>
           <dl class="scores">

@@ -9,7 +9,7 @@ import type { Phrase } from "../../core/phrase";
 import { teamsOfNext } from "../../core/timetable";
 import { BEATS_PER_S, Phase, SeatFlag } from "../../core/wire";
 import { said, t } from "../../i18n";
-import { team, timeOf } from "../../i18n/words";
+import { team, timeOf, winnerOf } from "../../i18n/words";
 import type { Desk } from "./desk";
 
 const AGAIN_MS = 5000;
@@ -85,31 +85,40 @@ export function DayCard({ desk }: { desk: Desk }) {
   );
 }
 
-/** The teams of this game that have not taken their seats, and since when they are awaited. */
+/** The teams of this game that have not taken their seats, and for how long they are awaited. */
 function Late({ desk }: { desk: Desk }) {
   const { court } = desk;
-  const state = useMemo(
+  const waitedS = useMemo(
     () =>
       part(
         court,
         ({ phase, beat, seats }) => {
-          const away = seats.map((seat) => !(seat.flags & SeatFlag.JOINED));
-          const isOpen = phase === Phase.LOBBY && away.includes(true);
-          return isOpen ? `${Math.floor(beat / BEATS_PER_S)} ${away.map(Number).join(" ")}` : "";
+          if (phase !== Phase.LOBBY) return "";
+          const left = (index: number) =>
+            court.events.peek().findLast(({ kind, seat }) => kind === "leave" && seat === index);
+          return seats
+            .map(({ flags }, index) => {
+              if (flags & SeatFlag.JOINED) return 0;
+              return Math.floor((beat - (left(index)?.beat ?? 0)) / BEATS_PER_S);
+            })
+            .join(" ");
         },
         "",
       ),
     [court],
   ).value;
   const sheet = court.sheet.value;
-  const [waitedS = 0, ...away] = state.split(" ").map(Number);
-  if (!sheet || !state || waitedS < LATE_S) return null;
-  const teams = sheet.seats.map((_, index) => team(sheet, index)).filter((_, index) => away[index]);
-  return (
-    <p class="warning">
-      {t("day.late", { teams: teams.join(", "), minutes: Math.floor(waitedS / 60) })}
-    </p>
-  );
+  if (!sheet || !waitedS) return null;
+  const waits = waitedS.split(" ").map(Number);
+  return waits.map((seconds, index) => {
+    if (seconds < LATE_S) return null;
+    const values = { teams: team(sheet, index), minutes: Math.floor(seconds / 60) };
+    return (
+      <p key={sheet.seats[index]!.id} class="warning">
+        {t("day.late", values)}
+      </p>
+    );
+  });
 }
 
 /** What the result would change in the contest, before it is made. */
@@ -118,19 +127,20 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
   const { frame, sheet } = desk.court;
   const scores = (frame.value?.seats.map((seat) => seat.score) ?? []).join(" ");
   const court = sheet.value?.court ?? "";
+  // Not by the scores: a game may have another winner.
+  const outcome = (winner ?? winnerOf(desk.court)) as Result["outcome"] | null;
   const lines = useSignal<readonly Phrase[] | null>(null);
   useEffect(() => {
     const [left, right] = scores.split(" ").map(Number);
     if (!from || left === undefined || right === undefined) return;
-    const byScore = left > right ? "left" : right > left ? "right" : "draw";
-    const outcome = (winner ?? byScore) as Result["outcome"];
+    if (!outcome) return;
     ask(from, court, { scores: [left, right], outcome }).then(
       ({ changes }) => {
         lines.value = changes;
       },
       () => undefined,
     );
-  }, [from, court, scores, winner, lines]);
+  }, [from, court, scores, outcome, lines]);
   if (!from || !lines.value?.length) return null;
   return (
     <div class="preview standings" aria-live="polite">

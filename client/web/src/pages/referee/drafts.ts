@@ -1,7 +1,6 @@
 /** Decisions that are asked about before they are taken: what the dialog says and collects. */
 
 import type { Court } from "../../core/court";
-import { declaration } from "../../core/rulings";
 import {
   BEATS_PER_S,
   type Decision,
@@ -58,10 +57,7 @@ export function official(court: Court): Draft {
     },
     confirm: t("decide.official"),
     final: true,
-    get winner() {
-      const declared = declaration(court.events.value)?.data.arguments as { winner?: string };
-      return declared?.winner ?? null;
-    },
+    winner: null,
     build: () => ({ type: "official" }),
   };
 }
@@ -176,6 +172,7 @@ export function moveClock(court: Court, given: number): Draft {
         if (!frame || !sheet) return "";
         const left = clockTicks(frame, sheet);
         const then = left + value * BEATS_PER_S;
+        if (then <= 0 && value > 0) return t("ask.clockOwed", { left: clock(-then) });
         if (then <= 0) return t("ask.clockEnds", { left: clock(left) });
         return `${clock(left)} → ${clock(then)}`;
       },

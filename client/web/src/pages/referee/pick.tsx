@@ -1,5 +1,6 @@
 /** The popover of what was clicked on the field: a disc, corner or flag, or a robot. */
 
+import { useSignal } from "@preact/signals";
 import { useLayoutEffect, useMemo, useRef } from "preact/hooks";
 import { markerStates } from "../../core/match";
 import { MARKER_STATES } from "../../core/wire";
@@ -26,26 +27,33 @@ interface Props {
 }
 
 const WIDTH_PX = 290;
-const HEIGHT_PX = 260;
 
 export function PickPopover({ desk, picked, onClose }: Props) {
   const element = useRef<HTMLDivElement>(null);
+  const heightPx = useSignal(0);
   // Before anything is drawn, because a quick user may press Escape at once.
   useLayoutEffect(() => {
     const before = document.activeElement;
+    heightPx.value = element.current?.offsetHeight ?? 0; // long names take more lines
     element.current?.querySelector<HTMLElement>("button:not([aria-disabled])")?.focus();
     const outside = (event: PointerEvent) => {
       if (!element.current?.contains(event.target as Node)) onClose();
     };
+    // Also where the focus has gone out of it.
+    const leave = (event: KeyboardEvent) => {
+      if (event.key === "Escape" && !document.querySelector("dialog[open]")) onClose();
+    };
     document.addEventListener("pointerdown", outside);
+    document.addEventListener("keydown", leave);
     return () => {
       document.removeEventListener("pointerdown", outside);
+      document.removeEventListener("keydown", leave);
       // Back to the disc or robot from which a keyboard came here.
       if (before?.isConnected && before !== document.body) (before as HTMLElement).focus?.();
     };
-  }, [onClose]);
+  }, [onClose, heightPx]);
   const left = Math.max(8, Math.min(picked.leftPx + 12, innerWidth - WIDTH_PX - 8));
-  const top = Math.max(8, Math.min(picked.topPx + 12, innerHeight - HEIGHT_PX - 8));
+  const top = Math.max(8, Math.min(picked.topPx + 12, innerHeight - heightPx.value - 8));
   return (
     <div
       ref={element}
@@ -54,7 +62,6 @@ export function PickPopover({ desk, picked, onClose }: Props) {
       aria-labelledby="pick-title"
       tabIndex={-1}
       style={`left: ${left}px; top: ${top}px; width: ${WIDTH_PX}px`}
-      onKeyDown={(event) => event.key === "Escape" && onClose()}
     >
       {picked.marker !== undefined && (
         <MarkerActs desk={desk} marker={picked.marker} then={onClose} />
