@@ -16,7 +16,15 @@ from lacoc_client.workshop.classroom.cards import (
     hand_times,
     stuck,
 )
-from lacoc_client.workshop.phases.evidence import Evidence, Hand, Tried, WentToPhase
+from lacoc_client.workshop.phases.evidence import (
+    Edited,
+    Evidence,
+    Hand,
+    LegEdit,
+    Tried,
+    TriedNumber,
+    WentToPhase,
+)
 from lacoc_client.workshop.phases.facts import TrialFacts
 from lacoc_client.workshop.phases.progress import progress
 from lacoc_shared.studio import TrialReply
@@ -46,8 +54,9 @@ def facts(**changes: Any) -> TrialFacts:
     return TrialFacts(**{**WALKS, **changes})
 
 
-def tried(**changes: Any) -> Tried:
-    return Tried(version="1", facts=facts(**changes))
+def tried(number: TriedNumber | None = None, **changes: Any) -> Tried:
+    numbers = () if number is None else (number,)
+    return Tried(version="1", facts=facts(**changes), numbers=numbers)
 
 
 @pytest.mark.parametrize(
@@ -106,16 +115,23 @@ def test_a_card_says_who_needs_help() -> None:
 
 
 def test_a_card_counts_only_walks_as_fast() -> None:
-    """The best speed counts only trials of key 2 without a fall; the last speed is of any key."""
+    """The best speed counts only trials of key 2 without a fall, with numbers of the student's own.
+
+    The last speed is of any key.
+    """
+    own, foreign = TriedNumber(1, 0, 0, 1, 40.0, 0.0), TriedNumber(1, 0, 1, 1, 40.0, 0.0)
+    typed = LegEdit(1, 0, 0, (1,), (0.0, 40.0, 0.0), (0.0, 0.0, 0.0))
     evidence: list[Evidence] = [
         WentToPhase(phase=4),
-        tried(speed_mm_s=70.0),
-        tried(speed_mm_s=200.0, upright=0.2),
-        tried(speed_mm_s=300.0, belly_share=0.5),
-        tried(speed_mm_s=90.0, keys=("B3",)),
+        Edited(version="1", by="hand", legs=(typed,)),
+        tried(own, speed_mm_s=70.0),
+        tried(own, speed_mm_s=200.0, upright=0.2),
+        tried(own, speed_mm_s=300.0, belly_share=0.5),
+        tried(foreign, speed_mm_s=400.0),
+        tried(own, speed_mm_s=90.0, keys=("B3",)),
     ]
     shown = card(SeenStudent(name="Anna"), evidence, progress(evidence), 0.0)
-    assert (shown.best_mm_s, shown.last_mm_s, shown.tries) == (70.0, 90.0, 4)
+    assert (shown.best_mm_s, shown.last_mm_s, shown.tries) == (70.0, 90.0, 5)
     assert shown.phase == 4
     assert shown.states[:2] == ("open", "skipped")
     assert shown.feet is None

@@ -170,7 +170,8 @@ def test_the_teacher_sees_what_students_do(
     student.ask("trial", table=student.sample(), sequences=SEQUENCES, keys="2")
     teacher.until(lambda: teacher.card("Cem")["tries"] == 1)
     card = teacher.card("Cem")
-    assert card["best_mm_s"] == card["last_mm_s"] > 30
+    assert card["last_mm_s"] > 30
+    assert card["best_mm_s"] is None  # the sample is nobody's own
     assert len(card["feet"]) == len(card["legs"]) == 6
     assert card["said"]["code"].startswith("explain.")
 

@@ -298,6 +298,24 @@ def test_what_one_member_took_is_offered_to_no_other(tmp_path: Path) -> None:
     run_async(take)
 
 
+def test_a_forgotten_student_s_table_is_offered_to_nobody(tmp_path: Path) -> None:
+    """Neither to the class nor to a group, and it is not in the class file."""
+
+    async def forget() -> None:
+        async with class_of(tmp_path, "Ann", "Ben", "Cleo") as room:
+            ann, ben, cleo = room.students.values()
+            await room.groups.join(ben, "Ants")
+            await room.hand_out("Table of Ann", FLAT, None, "", ann.name)
+            await room.hand_out("Table of Ann", FLAT, None, "Ants", ann.name)
+            await room.forget(cleo)
+            assert room.state.handed is not None
+            await room.forget(ann)
+            assert (room.state.handed, room.groups.find("Ants").handed) == (None, None)
+            assert b"Table of Ann" not in b"".join(one.content for one in await room.documents())
+
+    run_async(forget)
+
+
 def test_a_forgotten_student_s_proposals_go_from_all_tables(tmp_path: Path) -> None:
     """Also from the table of a group that the student has left before."""
 

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+import msgspec
 import psutil
 import pytest
 from aside import run_async
@@ -32,7 +33,11 @@ class Class:
     def __init__(self, folder: Path) -> None:
         self.states: list[TournamentState] = []
         self.news = asyncio.Event()
-        self.tournament = Tournament(folder, self.take)
+        self.kept: list[bytes] = []
+        self.tournament = Tournament(folder, self.take, self.keep)
+
+    async def keep(self) -> None:
+        self.kept.append(msgspec.json.encode(self.state))
 
     def take(self) -> None:
         self.states.append(self.tournament.state)
@@ -74,6 +79,18 @@ def test_a_tournament_of_a_class(tmp_path: Path) -> None:
             record = Record.read(room.tournament.recordings / one.record)
             assert record.result is not None
             assert record.result.scores == one.scores
+        again = Class(tmp_path)
+        again.tournament.load(room.kept[-1])
+        assert again.state == last
+        again.tournament.load(b"of another version")
+        await again.tournament.forget("ana")
+        said = msgspec.json.encode(again.state)
+        assert b'"ana"' in room.kept[-1]
+        assert b'"ana"' not in said
+        assert again.kept[-1] == said
+        gone = [one.record for one in last.matches if "ana" in (one.left, one.right)]
+        assert not any((tmp_path / "recordings" / str(name)).exists() for name in gone)
+        assert [one.name for one in again.state.standings].count("–") == 1
         quinn, zoe = last.left_out
         assert (quinn.name, quinn.mistakes) == ("Quinn", ())
         assert quinn.why is not None

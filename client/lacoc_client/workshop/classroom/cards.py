@@ -11,6 +11,7 @@ import numpy.typing as npt
 from lacoc_client.workshop.phases.evidence import Evidence, Hand, Tried
 from lacoc_client.workshop.phases.facts import STRAIGHT_DEG_S, TrialFacts
 from lacoc_client.workshop.phases.progress import State, StudentProgress
+from lacoc_client.workshop.phases.proof.numbers import own_trials
 from lacoc_shared.gait.cells import leg_labels
 from lacoc_shared.studio import TrialReply
 from lacoc_shared.words import Phrase, say
@@ -91,7 +92,8 @@ def card(
         now_s: time in seconds since 1970 (UTC).
     """
     tries = [one.facts for one in evidence if isinstance(one, Tried)]
-    speeds = [facts.speed_mm_s for facts in tries if facts.keys[-1] == _FORWARD and _walks(facts)]
+    own = [one.tried.facts for one in own_trials(evidence, 0) if one.is_own]
+    speeds = [facts.speed_mm_s for facts in own if facts.keys[-1] == _FORWARD and _walks(facts)]
     outcome = progress.outcomes[progress.phase]
     failed = stuck(tries)
     hand_up_s = (seen.hand_up_s or seen.seen_s) if progress.hand_up else None

@@ -32,7 +32,7 @@ from lacoc_client.workshop.classroom.teacher.news import (
     gone_message,
     tournament_message,
 )
-from lacoc_client.workshop.classroom.tournament import Tournament
+from lacoc_client.workshop.classroom.tournament import TOURNAMENT, Tournament
 from lacoc_client.workshop.design import requests
 from lacoc_client.workshop.design.designer import folder_message, sample_postures, studio_message
 from lacoc_client.workshop.design.files import FileContent
@@ -100,7 +100,7 @@ class Classroom:
         """All students who ever entered and were not deleted, by `same_name` of the nickname."""
         self.teachers: dict[Viewer, None] = {}
         """The open pages of the teacher."""
-        self.tournament = Tournament(folder, self._tell_tournament)
+        self.tournament = Tournament(folder, self._tell_tournament, self._keep_tournament)
         self._keeper = Keeper(folder / CLASS_FILE)
         self.groups = Groups(self._store, self._keep_groups, self.students)
         self._robot_name = robot or WORKSHOPS_ROBOT
@@ -130,6 +130,8 @@ class Classroom:
         evidence = _by_student(kept)
         documents = _by_student(store.documents())
         of_class = {one.name: one for one in documents.pop(NOBODY, [])}
+        if (played := of_class.pop(TOURNAMENT, None)) is not None:
+            self.tournament.load(played.content)
         if (settings := of_class.pop(NAME, None)) is not None:
             state = read_state(settings)
             if state is None:
@@ -234,14 +236,22 @@ class Classroom:
         table: FileTable,
         sequences: tuple[tuple[int, ...], ...] | None,
         group: str = "",
+        of: str = "",
     ) -> None:
         """Offer a gait's table to a group, or to all students and those who come later.
+
+        Args:
+            title: what students read.
+            table: the table.
+            sequences: the sequences of its keys; None: the usual ones.
+            group: name of the group; "": all students.
+            of: nickname of the student whose table it is; "": nobody's.
 
         Raises:
             UserError: if there is no group of this name.
         """
         number = self.state.handed_count + 1
-        handed = Handed(number=number, title=title, table=table, sequences=sequences)
+        handed = Handed(number=number, title=title, table=table, sequences=sequences, of=of)
         if group:
             await self.groups.hand_out(group, handed)
             await self._set(handed_count=number)
@@ -287,7 +297,10 @@ class Classroom:
         if self.students.get(same_name(student.name)) is student:  # else another page was quicker
             del self.students[same_name(student.name)]
         student.send_away()
+        if self.state.handed is not None and self.state.handed.of == student.name:
+            await self._set(handed=None)
         await self.groups.forget(student)
+        await self.tournament.forget(student.name)
         self._tell(gone_message(student.name))
 
     async def evidence(self) -> list[Kept]:
@@ -354,6 +367,13 @@ class Classroom:
 
     async def _keep_groups(self) -> None:
         await self._set(groups=tuple(self.groups.states.values()))
+
+    async def _keep_tournament(self) -> None:
+        content = msgspec.json.encode(self.tournament.state)
+        with suppress(UserError):  # `Keeper.trouble` says why
+            store = await self._store()
+            document = Document(NOBODY, TOURNAMENT, "", time.time(), content)
+            await asyncio.wrap_future(store.write(document))
 
     def _handed(self, student: ClassStudent) -> Handed | None:
         """Return the last table that the teacher offered to the class or to this student's group.

@@ -2,7 +2,8 @@
 
 import asyncio
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
@@ -26,8 +27,12 @@ from lacoc_shared.words import Phrase, say
 
 RECORDINGS = "recordings"
 """Folder of the records, in the folder of the class."""
+TOURNAMENT = "tournament"
+"""Name of the document in the class file that has the last tournament."""
 
 _BOT = "planner"
+_NOBODY = "–"
+"""Stands for a player who was deleted."""
 _CLOSE_S = 15.0
 
 
@@ -81,12 +86,16 @@ class Tournament:
     Args:
         folder: folder of the class; the records are in its folder "recordings".
         tell: called whenever `state` has changed.
+        keep: called when a tournament has ended; it keeps `state` for the next start.
     """
 
-    def __init__(self, folder: Path, tell: Callable[[], None]) -> None:
+    def __init__(
+        self, folder: Path, tell: Callable[[], None], keep: Callable[[], Awaitable[None]]
+    ) -> None:
         self.state = TournamentState()
         self.recordings = folder / RECORDINGS
         self._tell = tell
+        self._keep = keep
         self._playing: asyncio.Task[None] | None = None
         self._simulation: Simulation | None = None
         self._stopping = False
@@ -124,6 +133,41 @@ class Tournament:
         self._playing = asyncio.get_running_loop().create_task(self._play(fit, words))
         self._tell()
 
+    def load(self, kept: bytes) -> None:
+        """Load the state that an earlier run kept, if this version can read it."""
+        with suppress(msgspec.DecodeError):
+            self.state = msgspec.json.decode(kept, type=TournamentState)
+
+    async def forget(self, name: str) -> None:
+        """Take a player's name out of the tournament, and delete the records of its matches."""
+        state = self.state
+
+        def is_of(match: ClassMatch) -> bool:
+            return name in (match.left, match.right)
+
+        for match in filter(is_of, state.matches):
+            if match.record:
+                await asyncio.to_thread((self.recordings / match.record).unlink, missing_ok=True)
+
+        def hidden(one: str) -> str:
+            return _NOBODY if one == name else one
+
+        renamed = msgspec.structs.replace
+        self.state = renamed(
+            state,
+            matches=tuple(
+                renamed(one, left=hidden(one.left), right=hidden(one.right), record=None)
+                if is_of(one)
+                else one
+                for one in state.matches
+            ),
+            standings=tuple(renamed(one, name=hidden(one.name)) for one in state.standings),
+            left_out=tuple(one for one in state.left_out if one.name != name),
+        )
+        if self.state != state:
+            await self._keep()
+            self._tell()
+
     async def stop(self) -> None:
         """End the tournament, if one is being played; the matches that have ended stay."""
         if self._playing is None:
@@ -158,6 +202,7 @@ class Tournament:
             if self._stopping:
                 trouble = None  # its complaint that it was ended
             self._change(state="done" if is_done else "stopped", trouble=trouble)
+            await self._keep()
 
     async def _simulate(
         self, teams: "Mapping[str, _TournamentPlayer]", words: list[str]

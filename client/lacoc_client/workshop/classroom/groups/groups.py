@@ -152,6 +152,9 @@ class Groups:
                 if state.last == student.name:
                     await self._end(state)
                     has_left = True
+                elif state.handed is not None and state.handed.of == student.name:
+                    self.states[state.id] = msgspec.structs.replace(state, handed=None)
+                    has_left = True
             for id_ in [*self.states]:
                 if id_ == own or self._tables[id_].has_proposals(student.name):
                     await self._tables[id_].forget(student.name)

@@ -15,7 +15,11 @@ class Handed(msgspec.Struct, frozen=True, kw_only=True):
     title: str
     table: FileTable
     sequences: tuple[tuple[int, ...], ...] | None = None
+    of: str = ""
+    """Nickname of the student whose table it is; "": nobody's."""
 
     def message(self) -> bytes:
         """Return the message that offers this table to a page."""
-        return wire.map_message(MessageKind.HANDED, msgspec.structs.asdict(self))
+        body = msgspec.structs.asdict(self)
+        del body["of"]  # the title says what students shall know
+        return wire.map_message(MessageKind.HANDED, body)

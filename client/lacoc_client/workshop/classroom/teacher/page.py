@@ -112,8 +112,11 @@ class TeacherPage:
 
     async def _hand_out(self, asked: requests.HandOutAsk) -> None:
         if asked.student is not None:
-            draft = _draft(self._class.find(asked.student))
-            await self._class.hand_out(asked.title, draft.table, draft.sequences, asked.group)
+            student = self._class.find(asked.student)
+            draft = _draft(student)
+            await self._class.hand_out(
+                asked.title, draft.table, draft.sequences, asked.group, student.name
+            )
             return
         table = asked.table or (await asyncio.to_thread(self._class.sample)).table
         if table is None:
@@ -148,13 +151,15 @@ class TeacherPage:
     def _players(self) -> dict[str, SeatFiles]:
         """Return the files of each group, and of each student who works alone, by name.
 
-        Groups and students without a table are left out.
+        Groups and students without a table are left out. Whoever has a table that was never
+        complete is a player without a gait: the tournament says so.
         """
         students = [one for one in self._class.students.values() if one.table is one.own]
         drafts = {one.name: one.draft for one in students if one.draft is not None}
+        bad = [one.name for one in students if one.draft is None and one.own.is_touched]
         for name, draft in self._class.groups.drafts().items():
             drafts[group_title(name, drafts)] = draft
-        players = {}
+        players = {name: SeatFiles(self._class.robot) for name in bad}
         for name, draft in drafts.items():
             try:
                 files = draft.files()
@@ -166,5 +171,7 @@ class TeacherPage:
 
 def _draft(student: ClassStudent) -> Draft:
     if student.draft is None:
+        if student.table.is_touched:
+            raise UserError(say("class.bad-table", name=student.name))
         raise UserError(say("class.no-table", name=student.name))
     return student.draft

@@ -54,6 +54,11 @@ class OwnTrial:
     foreign: tuple[TriedNumber, ...]
     """The numbers that are foreign, also those that did not change in this phase."""
 
+    @property
+    def is_own(self) -> bool:
+        """Whether the gait is the student's: some numbers are typed or made, none is foreign."""
+        return self.typed + self.made > 0 and not self.foreign
+
 
 def own_trials(evidence: Sequence[Evidence], start: int) -> list[OwnTrial]:
     """Find for each trial where the numbers in the rows that it used came from.
