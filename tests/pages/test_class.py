@@ -101,8 +101,8 @@ def test_a_raised_hand_comes_first_and_is_taken_down_by_keyboard(
     desk.sees(".code b", room.code)
     desk.sees(".address b", room.listen)
     tries(ada)
-    expect(desk.find(f"{desk.card('Ada')} .speeds b")).not_to_have_text("–")
-    assert desk.number(f"{desk.card('Ada')} .speeds b") > 30
+    expect(desk.find(f"{desk.card('Ada')} .speeds small")).not_to_have_text("–")
+    assert desk.number(f"{desk.card('Ada')} .speeds small") > 30
     desk.sees(f"{desk.card('Ada')} svg.feet")
     # As narrow as one of thirty cards, it still has its figures inside.
     narrow = "(card) => { card.style.width = '157px'; return card.scrollWidth - card.clientWidth; }"
