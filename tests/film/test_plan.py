@@ -3,13 +3,14 @@
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from lacoc_client.film import moments, plan
+from lacoc_client.film.film import FilmPart
 from lacoc_client.film.moments import Moment
 from lacoc_client.film.plan import Shot
 from lacoc_shared.mistakes import UserError
@@ -117,3 +118,13 @@ def test_a_file_without_moments_is_refused(tmp_path: Path, text: str) -> None:
         moments.from_file(file)
     file.write_text('{"moments": [{"beat": 12, "swing": 0.5, "why": "a fork"}]}')
     assert moments.from_file(file) == [Moment(12, 0.5)]
+
+
+def test_moments_outside_of_the_match_take_no_place() -> None:
+    """They are not chosen before smaller ones inside; if none is inside, that is said."""
+    outside = tuple(Moment(beat, 9.0) for beat in (1, 2, 5000, 6000, 7000))
+    part = FilmPart(cast(Any, None), (), count=5, chosen=(*outside, Moment(1000, 0.1)))
+    alone = FilmPart(cast(Any, None), (), count=5, chosen=(Moment(1000, 0.1),))
+    assert part.shots(500, 2000) == alone.shots(500, 2000)
+    with pytest.raises(UserError, match="500 to 2000"):
+        FilmPart(cast(Any, None), (), count=5, chosen=outside).shots(500, 2000)

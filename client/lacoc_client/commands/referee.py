@@ -498,7 +498,11 @@ def _log_line(event: Event, sheet: Sheet) -> Text:
 
 def _log_table(events: tuple[Event, ...], sheet: Sheet) -> Table:
     table = screen.table(
-        say("fact.number"), say("fact.clock"), say("fact.kind"), say("fact.seat"), say("fact.what")
+        say("fact.number"),
+        say("fact.clock"),
+        say("fact.kind"),
+        say("fact.seat"),
+        say("fact.what-happened"),
     )
     for event in events:
         plain = event_dict(event, sheet)

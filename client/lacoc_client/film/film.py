@@ -14,9 +14,11 @@ from lacoc_client.film.movie import Movie, movie
 from lacoc_client.film.plan import Picture, Shot
 from lacoc_client.film.site import served
 from lacoc_shared.command import keep
+from lacoc_shared.mistakes import UserError
 from lacoc_shared.record import files
 from lacoc_shared.record.reader import Record
 from lacoc_shared.seat import BEATS_PER_S
+from lacoc_shared.words import say
 
 HIGHLIGHTS = 5
 """How many moments a film of a match's highlights shows."""
@@ -54,10 +56,16 @@ class FilmPart:
         Args:
             first: the first beat that may be shown.
             last: the last beat that may be shown.
+
+        Raises:
+            UserError: if all chosen moments are outside of them.
         """
         if self.count is None:
             return plan.whole(first, last)
-        best = moments.largest(self.moments, self.count)
+        inside = [one for one in self.moments if first <= one.beat <= last]
+        if self.chosen and not inside:
+            raise UserError(say("film.moments-outside", first=first, last=last))
+        best = moments.largest(inside, self.count)
         return plan.highlights(best, first, last, opening=self.opening)
 
     def still(self, first: int, last: int) -> int:

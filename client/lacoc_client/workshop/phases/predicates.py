@@ -121,6 +121,9 @@ class Bound:
     """Takes the trial's number (0 if it has none); returns a sentence that says what is missing."""
     least: float = -math.inf
     most: float = math.inf
+    digits: int = 0
+    """Decimals of the number in the sentence. It is rounded away from the limit, so that no sentence
+    says "15 mm, at least 15 mm"."""
 
     def look(self, facts: TrialFacts) -> Outcome:
         """Compare the trial's number with the limits."""
@@ -135,7 +138,8 @@ class Bound:
             limit = abs(self.least if number < self.least else self.most)
             beyond = max(self.least - number, number - self.most)
             share = limit / (limit + beyond)
-        return Outcome(min(_NEARLY, share), (self.lacks(number),))
+        shown = (math.floor if number < self.least else math.ceil)(number * 10**self.digits)
+        return Outcome(min(_NEARLY, share), (self.lacks(shown / 10**self.digits),))
 
 
 @dataclass(frozen=True)

@@ -248,5 +248,6 @@ function reasonOfBoth(chip: Reason | null, words: string): Phrase | string {
 function wrongAmount(amount: NonNullable<Draft["amount"]>, value: number): string {
   const fits = value >= amount.least && value <= amount.most && value !== 0;
   if (fits && (!amount.whole || Number.isInteger(value))) return "";
-  return t("ask.between", { least: amount.least, most: amount.most });
+  const { least, most } = amount;
+  return t(amount.whole ? "ask.whole" : "ask.between", { least, most });
 }
