@@ -415,6 +415,22 @@ def test_a_class_that_can_not_be_opened_leaves_no_folder(
     assert "Cannot make the folder" in str(done.exception)
 
 
+@pytest.mark.parametrize("alone", [True, False])
+def test_a_robot_without_a_sample_gait_is_told(
+    alone: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Phase 5 compares with the sample: the teacher learns before the lesson that there is none."""
+    monkeypatch.setattr(class_, "own_studio", lambda: nullcontext("tcp/127.0.0.1:1"))
+    monkeypatch.setattr(class_.server, "run", lambda site, opened, ready, most: ready())
+    name, data = find_robot("hexapod")
+    (tmp_path / name).write_bytes(data)
+    robot = str(tmp_path / name) if alone else "hexapod"
+    words = [str(tmp_path / "class"), "--no-open", "--listen", "127.0.0.1:0", "--robot", robot]
+    done = CliRunner().invoke(class_.app, words)
+    assert done.exit_code == 0
+    assert ("no sample gait" in " ".join(done.output.split())) == alone
+
+
 @pytest.mark.long
 def test_the_commands_export_and_forget(tmp_path: Path) -> None:
     """An open class can't be exported or forgotten. Once it is closed, forget leaves no file.

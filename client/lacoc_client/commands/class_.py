@@ -116,6 +116,8 @@ def open_command(
             screen.show(say("class.students", url=address, code=classroom.state.code))
             screen.show(say("web.opened", url=teacher) if shown else say("web.open", url=teacher))
             screen.note(say("class.keep-running"))
+            if classroom.sample().table is None:
+                screen.warn(say("class.robot-without-sample"))
 
         server.run(class_site(classroom, PageFiles()), opened, ready, MESSAGE_BYTES)
 
