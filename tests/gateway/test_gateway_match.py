@@ -205,6 +205,7 @@ def test_who_only_watched_leaves_it_to_the_other_after_a_break(venue: Venue) -> 
     venue.court()
     venue.web()
     with PageClient(venue.url) as lee:
+        lee.wait(lambda: lee.link.get("connected"))
         lee.ask("enter", token=REFEREE, by="Lee", acts=False)
         lee.wait(lambda: lee.referee == {"acting": None, "mine": False})
         kim = venue.referee("山田\u3000太郎")
