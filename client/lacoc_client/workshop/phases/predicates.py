@@ -122,8 +122,8 @@ class Bound:
     least: float = -math.inf
     most: float = math.inf
     digits: int = 0
-    """Decimals of the number in the sentence. It is rounded away from the limit, so that no sentence
-    says "15 mm, at least 15 mm"."""
+    """Decimals of the number in the sentence. It is rounded away from the limit, or a sentence
+    could say "15 mm, at least 15 mm"."""
 
     def look(self, facts: TrialFacts) -> Outcome:
         """Compare the trial's number with the limits."""
