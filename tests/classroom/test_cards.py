@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from lacoc_client.workshop.classroom.cards import (
     QUIET_S,
     SeenStudent,
+    best_speed,
     card,
     failure,
     foot_runs,
@@ -130,7 +131,8 @@ def test_a_card_counts_only_walks_as_fast() -> None:
         tried(foreign, speed_mm_s=400.0),
         tried(own, speed_mm_s=90.0, keys=("B3",)),
     ]
-    shown = card(SeenStudent(name="Anna"), evidence, progress(evidence), 0.0)
+    seen = SeenStudent(name="Anna", best_mm_s=best_speed(evidence))
+    shown = card(seen, evidence, progress(evidence), 0.0)
     assert (shown.best_mm_s, shown.last_mm_s, shown.tries) == (70.0, 90.0, 5)
     assert shown.phase == 4
     assert shown.states[:2] == ("open", "skipped")

@@ -47,8 +47,9 @@ class Card(msgspec.Struct, frozen=True, kw_only=True):
     """The first thing that the student must still do in this phase; None: nothing."""
     tries: int
     best_mm_s: float | None
-    """Highest forward speed of a trial whose last key, which is measured, was B2, and in which the
-    robot stayed upright and off the floor [mm/s]; None: there was no such trial."""
+    """Highest forward speed of a trial with numbers of the student's own, and of no others, whose
+    last key, which is measured, was B2, and in which the robot stayed upright and off the floor
+    [mm/s]; None: there was no such trial."""
     last_mm_s: float | None
     """Forward speed of the last trial [mm/s]; None: there was no trial."""
     legs: tuple[str, ...]
@@ -78,6 +79,19 @@ class SeenStudent(msgspec.Struct, frozen=True, kw_only=True):
     hand_up_s: float | None = None
     trial: TrialReply | None = None
     """The last trial since the class was opened."""
+    best_mm_s: float | None = None
+    """What `best_speed` finds in the evidence; it changes only with a trial."""
+
+
+def best_speed(evidence: Sequence[Evidence]) -> float | None:
+    """Return the highest speed of a walk with numbers of the student's own; see `Card.best_mm_s`.
+
+    Args:
+        evidence: all evidence of the student, in order.
+    """
+    own = (one.tried.facts for one in own_trials(evidence, 0) if one.is_own)
+    speeds = [facts.speed_mm_s for facts in own if facts.keys[-1] == _FORWARD and _walks(facts)]
+    return max(speeds, default=None)
 
 
 def card(
@@ -92,8 +106,6 @@ def card(
         now_s: time in seconds since 1970 (UTC).
     """
     tries = [one.facts for one in evidence if isinstance(one, Tried)]
-    own = [one.tried.facts for one in own_trials(evidence, 0) if one.is_own]
-    speeds = [facts.speed_mm_s for facts in own if facts.keys[-1] == _FORWARD and _walks(facts)]
     outcome = progress.outcomes[progress.phase]
     failed = stuck(tries)
     hand_up_s = (seen.hand_up_s or seen.seen_s) if progress.hand_up else None
@@ -117,7 +129,7 @@ def card(
         share=outcome.share,
         missing=next(iter(outcome.missing), None),
         tries=len(tries),
-        best_mm_s=max(speeds, default=None),
+        best_mm_s=seen.best_mm_s,
         last_mm_s=tries[-1].speed_mm_s if tries else None,
         legs=leg_labels(len(feet or ())),
         feet=feet,

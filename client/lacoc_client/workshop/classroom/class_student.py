@@ -3,12 +3,18 @@
 import time
 from collections.abc import Callable, Iterable, Sequence
 
-from lacoc_client.workshop.classroom.cards import Card, SeenStudent, card, hand_times
+from lacoc_client.workshop.classroom.cards import (
+    Card,
+    SeenStudent,
+    best_speed,
+    card,
+    hand_times,
+)
 from lacoc_client.workshop.design.learning.diary import Diary
 from lacoc_client.workshop.design.learning.rules import StudentRules
 from lacoc_client.workshop.design.learning.student import Student
 from lacoc_client.workshop.phases.class_file import Document, Kept
-from lacoc_client.workshop.phases.evidence import JoinedClass
+from lacoc_client.workshop.phases.evidence import JoinedClass, Tried
 from lacoc_shared.studio import TrialReply
 
 TOKEN = "token"
@@ -38,6 +44,8 @@ class ClassStudent(Student):
         """Time at which the hand went up, in seconds since 1970 (UTC); None: it is not up."""
         self._trial: TrialReply | None = None
         self._last: Card | None = None
+        self._best: tuple[int, float | None] = (0, None)
+        """Number of trials, and the best speed of them."""
 
     def begin(self, evidence: Sequence[Kept], documents: Iterable[Document]) -> None:
         """Load what this student did, the own table and the hashes of tokens from the class file.
@@ -93,8 +101,16 @@ class ClassStudent(Student):
             seen_s=self.seen_s,
             hand_up_s=self.hand_up_s,
             trial=self._trial,
+            best_mm_s=self._best_mm_s(),
         )
         return card(seen, self.diary.evidence, self.diary.progress, time.time())
+
+    def _best_mm_s(self) -> float | None:
+        """Return the best speed; all edits are looked at only after a new trial."""
+        trials = sum(isinstance(one, Tried) for one in self.diary.evidence)
+        if trials != self._best[0]:
+            self._best = trials, best_speed(self.diary.evidence)
+        return self._best[1]
 
     def changed_card(self) -> Card | None:
         """Return the student's card if it has changed since the last call; else None."""

@@ -141,32 +141,27 @@ class Tournament:
     async def forget(self, name: str) -> None:
         """Take a player's name out of the tournament, and delete the records of its matches."""
         state = self.state
-
-        def is_of(match: ClassMatch) -> bool:
-            return name in (match.left, match.right)
-
-        for match in filter(is_of, state.matches):
-            if match.record:
-                await asyncio.to_thread((self.recordings / match.record).unlink, missing_ok=True)
-
-        def hidden(one: str) -> str:
-            return _NOBODY if one == name else one
-
-        renamed = msgspec.structs.replace
-        self.state = renamed(
-            state,
-            matches=tuple(
-                renamed(one, left=hidden(one.left), right=hidden(one.right), record=None)
-                if is_of(one)
-                else one
-                for one in state.matches
-            ),
-            standings=tuple(renamed(one, name=hidden(one.name)) for one in state.standings),
-            left_out=tuple(one for one in state.left_out if one.name != name),
+        matches, records = [], []
+        for one in state.matches:
+            if name in (one.left, one.right):
+                records.append(one.record)
+                left, right = (_NOBODY if it == name else it for it in (one.left, one.right))
+                one = msgspec.structs.replace(one, left=left, right=right, record=None)
+            matches.append(one)
+        standings = [
+            msgspec.structs.replace(one, name=_NOBODY) if one.name == name else one
+            for one in state.standings
+        ]
+        left_out = [one for one in state.left_out if one.name != name]
+        self.state = msgspec.structs.replace(
+            state, matches=tuple(matches), standings=tuple(standings), left_out=tuple(left_out)
         )
-        if self.state != state:
-            await self._keep()
-            self._tell()
+        if self.state == state:
+            return
+        self._tell()
+        await self._keep()
+        for record in filter(None, records):
+            await asyncio.to_thread((self.recordings / record).unlink, missing_ok=True)
 
     async def stop(self) -> None:
         """End the tournament, if one is being played; the matches that have ended stay."""

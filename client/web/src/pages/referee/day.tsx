@@ -133,7 +133,10 @@ export function Standings({ desk, winner }: { desk: Desk; winner: string | null 
   useEffect(() => {
     const [left, right] = scores.split(" ").map(Number);
     if (!from || left === undefined || right === undefined) return;
-    if (!outcome) return;
+    if (!outcome) {
+      lines.value = null;
+      return;
+    }
     ask(from, court, { scores: [left, right], outcome }).then(
       ({ changes }) => {
         lines.value = changes;
