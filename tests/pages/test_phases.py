@@ -145,7 +145,7 @@ def test_six_phases_are_done_by_keyboard(
             page.fills(2, col, "45")
         page.fills(2, 5, "0")
         page.chooses(".learn button:has-text('(A1, A2)')")
-        page.answers("R,C, L,B and L,F")
+        page.answers('"R,C", "L,B" and "L,F"')
         page.is_done(3)
 
         expect(page.find(".chooser select")).to_have_value("A1, A2")
