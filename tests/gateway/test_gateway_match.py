@@ -171,6 +171,11 @@ def test_a_newer_page_takes_the_seat(venue: Venue) -> None:
     with refusal("refused.not-yours"):
         first.press(**FORWARD)
     assert second.seat["hold"] == "held"
+    assert second.seat["session"] != first.seat["session"]
+    session = second.seat["session"]  # as the court's health names it
+    second.wait(
+        lambda: second.health is not None and session in {it.session for it in second.health.seats}
+    )
     second.ask("leave")
     second.wait(lambda: second.seat["hold"] == "left")
 

@@ -692,6 +692,23 @@ def test_a_seat_taken_elsewhere_can_be_taken_back(venue: Venue, sit: Sit) -> Non
 
 
 @pytest.mark.long
+def test_a_page_that_comes_back_takes_no_seat_from_who_drives_it(venue: Venue, sit: Sit) -> None:
+    """A device that slept is told that another one has its seat now, and disturbs nobody."""
+    page = seated(venue, sit)
+    page.page.reload()
+    page.stands("seated")  # its own seat, at once
+    page.page.goto("about:blank")
+    elsewhere = venue.contestant("left", "Ants")
+    page.page.go_back()
+    page.stands("lost")
+    page.sees(".entrance", "nother window or computer has taken")
+    assert elsewhere.seat["hold"] == "held"
+    elsewhere.close()  # nobody drives the seat any more
+    page.page.click("text=Join again")
+    page.stands("seated")
+
+
+@pytest.mark.long
 def test_court_and_gateway_may_die(venue: Venue, sit: Sit, console: Any) -> None:
     """While court or gateway is down, the page shows a banner and grey keys; then play goes on."""
     court = venue.court("--seconds", "120")

@@ -207,6 +207,11 @@ class Controller:
             )
         return names.index(self.seat)
 
+    @property
+    def session(self) -> int:
+        """Number of the court's session with which this controller holds its seat; 0: none."""
+        return self._joined.session if self._joined is not None else 0
+
     def join(self, timeout_s: float = 5.0) -> tuple[Phrase, ...]:
         """Take the seat; if an older controller with the same token has it, it loses the seat.
 

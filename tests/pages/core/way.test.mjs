@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Driver, nextMove } from "../../../client/web/src/core/way.ts";
+import { Driver, nextMove, Return } from "../../../client/web/src/core/way.ts";
 
 const called = { state: "court", court: "north", seat: "left", call: "c1" };
 const waits = { state: "waits", court: "south", seat: "", call: "" };
@@ -78,3 +78,47 @@ test("who drives a seat is not forgotten in a short silence, nor for another cal
   assert.equal(driver.drives("c1", 11_000), false);
   assert.equal(driver.drives("c2", 1500), false);
 });
+
+const health = (session, heard_ms) => ({ seats: [{ id: "left", session, heard_ms }] });
+
+for (const [name, mine, looks, found] of [
+  ["knows no session", 0, [[health(7, 20), 0]], "ask"],
+  ["has heard nothing of the court yet", 5, [[null, 0]], "wait"],
+  ["still holds it", 5, [[health(5, 20), 0]], "ask"],
+  ["finds it free, because the court was restarted", 5, [[health(0, null), 0]], "ask"],
+  ["finds somebody who was not heard lately", 5, [[health(7, 2000), 0]], "ask"],
+  [
+    "finds somebody who may be its own gateway",
+    5,
+    [
+      [health(7, 20), 0],
+      [health(7, 20), 2900],
+    ],
+    "wait",
+  ],
+  [
+    "finds that this one falls silent",
+    5,
+    [
+      [health(7, 20), 0],
+      [health(7, 1600), 2500],
+    ],
+    "ask",
+  ],
+  [
+    "finds somebody who drives",
+    5,
+    [
+      [null, 0],
+      [health(7, 20), 500],
+      [health(7, 20), 3000],
+    ],
+    "yield",
+  ],
+]) {
+  test(`a page that comes back to its seat and ${name}: ${found}`, () => {
+    const coming = new Return();
+    const found_all = looks.map(([seen, nowMs]) => coming.look(seen, "left", mine, nowMs));
+    assert.equal(found_all.at(-1), found);
+  });
+}

@@ -152,6 +152,7 @@ class SeatThread:
             "index": controller.index,
             "hold": controller.hold.value,
             "reason": controller.reason,
+            "session": controller.session,
         }
         if told != self._told:
             self._told = told

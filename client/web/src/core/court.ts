@@ -168,6 +168,7 @@ export class Court implements Match {
   private watch(): Promise<unknown> {
     this.seat.value = null;
     this.referee.value = null;
+    this.health.value = null; // what was known before a break
     const { hz, directed: director } = this;
     const aside = this.watched === "aside";
     const court = setting("court") || null;

@@ -20,6 +20,7 @@ import type { Phrase } from "./phrase";
 import { type PosData, PosDataLog } from "./posdata";
 import { type RefusedKey, SentKeys } from "./sent_keys";
 import { tab } from "./storage";
+import { Return } from "./way";
 import {
   BEAT_S,
   type Frame,
@@ -71,6 +72,9 @@ export class Player {
   readonly canSteer: ReadonlySignal<boolean>;
   /** How the claim to a seat stands. */
   readonly claim = signal<Claim>(claimOf(kept()));
+  /** Number of the session that held the seat last; 0: unknown. */
+  private readonly session = signal(kept()?.session ?? 0);
+  private readonly coming = new Return();
   /** From the newest key to the frame that shows it, as this page saw both. */
   readonly tripMs = signal<number | null>(null);
   /** The newest keys that were sent, the newest last. */
@@ -254,7 +258,10 @@ export class Player {
       if (court.welcome.value) this.greeted.value = true;
     });
     const keeps = computed(() => keptWish(this.claim.value));
-    effect(() => tab.write(KEPT_AS, keeps.value && JSON.stringify(keeps.value)));
+    effect(() => {
+      const held = keeps.value && { ...keeps.value, session: this.session.value };
+      tab.write(KEPT_AS, held && JSON.stringify(held));
+    });
     const version = computed(() => court.ownFiles.value?.version);
     effect(() => {
       chosenNames.value; // changes also when a file is replaced by one of the same name
@@ -281,12 +288,21 @@ export class Player {
         this.tell({ is: "taken", why: seat.reason || { code: `hold.${seat.hold}` } }),
       );
     }
+    if (seat?.session) this.session.value = seat.session;
     // Also after a break of the page, the gateway or the link; a court that was only restarted is
     // asked again by the gateway.
     const isOpen =
       this.greeted.value && court.welcome.value?.can_act && court.link.value?.connected;
-    if (!isOpen || !this.wishHere.value || this.claim.value.request !== "none") return;
-    if (!this.isHeld()) untracked(() => this.tell({ is: "open" }));
+    const wish = this.wishHere.value;
+    if (!isOpen || !wish || this.claim.value.request !== "none" || this.isHeld()) return;
+    const to = keptWish(this.claim.value) ? this.lookBack(wish.seat) : "ask";
+    if (to === "ask") untracked(() => this.tell({ is: "open" }));
+    if (to === "yield") untracked(() => this.tell({ is: "taken", why: { code: "hold.replaced" } }));
+  }
+
+  /** Whether the page may take again, unasked, the seat that it held before a break. */
+  private lookBack(seat: string) {
+    return this.coming.look(this.court.health.value, seat, this.session.value, performance.now());
   }
 
   private tell(event: ClaimEvent): void {
@@ -349,7 +365,7 @@ export class Player {
     this.sent = new SentKeys();
     this.isFresh = true;
     // The gateway says so in its next message; until then nothing may ask again.
-    this.court.seat.value = { seat, index, hold: HELD, reason: null };
+    this.court.seat.value = { seat, index, hold: HELD, reason: null, session: 0 };
   }
 
   private async release(): Promise<void> {
@@ -408,7 +424,7 @@ export class Player {
   }
 }
 
-function kept(): Wish | null {
+function kept(): (Wish & { session?: number }) | null {
   try {
     return JSON.parse(tab.read(KEPT_AS) ?? "null") as Wish | null;
   } catch {

@@ -78,3 +78,33 @@ export class Driver {
     return call === this.call && nowMs - this.heardMs < BACK_MS;
   }
 }
+
+/** Whoever is heard for so long holds the seat; a page's own gateway falls silent sooner. */
+const OTHERS_MS = 3000;
+
+/** Decides whether a page that comes back, such as a tablet that wakes, may take its seat again. */
+export class Return {
+  private sinceMs: number | null = null;
+
+  /**
+   * Look at who holds the seat now.
+   *
+   * @param health The court's, since the page came back; null: none yet.
+   * @param seat The seat that the page held.
+   * @param session The session with which the page held it; 0: unknown.
+   * @returns `ask`: nobody else drives the seat. `wait`: it is not known yet. `yield`: somebody
+   *   else has taken it meanwhile, and drives it.
+   */
+  look(
+    health: Health | null,
+    seat: string,
+    session: number,
+    nowMs: number,
+  ): "ask" | "wait" | "yield" {
+    const holder = health?.seats.find(({ id }) => id === seat)?.session;
+    const isOthers = session !== 0 && holder !== session && (!health || isDriven(health, seat));
+    this.sinceMs = isOthers ? (this.sinceMs ?? nowMs) : null;
+    if (this.sinceMs === null) return "ask";
+    return health && nowMs - this.sinceMs >= OTHERS_MS ? "yield" : "wait";
+  }
+}

@@ -93,6 +93,8 @@ export interface HeldSeat {
   /** The name of `hold.*`. */
   hold: string;
   reason: Phrase | null;
+  /** Number of the court's session that holds the seat; 0: unknown. */
+  session: number;
 }
 
 /** What the organiser of a contest tells everybody. */
