@@ -178,7 +178,7 @@ def test_wrong_tokens_are_refused_and_can_not_be_guessed(open_venue: Venue) -> N
             page.ask("join", seat="middle", token=TOKENS["left"], name="Ants")
         with refusal("gateway.no-token"):
             page.ask("join", seat="left", token=None, name="Ants")
-        with refusal("gateway.who-are-you"):
+        with refusal("refused.who-decides"):
             page.ask("enter", token=REFEREE, by=" ")
         said: set[str] = set()
         for _ in range(20):

@@ -335,8 +335,8 @@ def _marker(name: str) -> str:
 
     A disc may be called as in pictures: C4 is c2r3.
     """
-    if found := re.fullmatch("([A-Z])([1-9][0-9]?)", name):
-        return f"c{ord(found[1]) - ord('A')}r{int(found[2]) - 1}"
+    if found := re.fullmatch("([A-Za-z])([1-9][0-9]?)", name):
+        return f"c{ord(found[1].upper()) - ord('A')}r{int(found[2]) - 1}"
     return name
 
 

@@ -69,7 +69,7 @@ class DecisionDesk:
             return self._refuse(Why.BAD_DECISION, said)
         by = read_name(request.by, REFEREE_NAME_MAX)
         if by is None:
-            return self._refuse(Why.BAD_NAME, say("refused.who-decides"))
+            return self._refuse(Why.BAD_NAME, say("refused.who-decides", most=REFEREE_NAME_MAX))
         if not _numbers_are_sane(request.decision):
             why = say("why.number-too-large")
             said = say("refused.decision", decision=name, why=why)

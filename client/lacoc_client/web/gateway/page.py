@@ -258,7 +258,7 @@ class Page:
     async def _enter(self, asked: wire.EnterAsk, feed: CourtFeed, referees: Referees) -> Any:
         by = read_name(asked.by, REFEREE_NAME_MAX)
         if by is None:
-            raise UserError(say("gateway.who-are-you"))
+            raise UserError(say("refused.who-decides", most=REFEREE_NAME_MAX))
         # One at a time, so that a page that tries wrong tokens uses one thread, not many.
         if self._entering.locked():
             raise UserError(TOO_MUCH)
