@@ -123,9 +123,14 @@ def test_a_tournament_that_is_ended_early(tmp_path: Path) -> None:
         assert 1 <= room.state.done == len(room.state.matches) < 50
         assert psutil.wait_procs(workers, 30)[1] == []
 
+        kept = [*room.tournament.recordings.glob("*.mcap")]
         await room.tournament.play(players, "othello", 50, 3.0)
         assert room.state.matches == ()
         await room.until(1)
+        await room.tournament.forget("Ada")
+        await room.until(room.state.done + 1)
+        assert b'"Ada"' not in msgspec.json.encode(room.state)
+        assert [*room.tournament.recordings.glob("*.mcap")] == kept
         await room.tournament.stop()
         assert (room.state.state, room.state.trouble) == ("stopped", None)
         assert len(room.state.matches) >= 1

@@ -96,6 +96,8 @@ class Tournament:
         self.recordings = folder / RECORDINGS
         self._tell = tell
         self._keep = keep
+        self._teams: dict[str, _TournamentPlayer] = {}
+        """The players of the running tournament, by their words on its command line."""
         self._playing: asyncio.Task[None] | None = None
         self._simulation: Simulation | None = None
         self._stopping = False
@@ -140,6 +142,9 @@ class Tournament:
 
     async def forget(self, name: str) -> None:
         """Take a player's name out of the tournament, and delete the records of its matches."""
+        for word, player in self._teams.items():
+            if player.name == name:  # matches that end later get no name, and no record
+                self._teams[word] = msgspec.structs.replace(player, name=_NOBODY)
         state = self.state
         matches, records = [], []
         for one in state.matches:
@@ -181,9 +186,9 @@ class Tournament:
         scratch: Scratch | None = None
         try:
             scratch = await asyncio.to_thread(Scratch, "tournament")
-            teams = await asyncio.to_thread(_written, players, scratch.path)
+            self._teams = await asyncio.to_thread(_written, players, scratch.path)
             if not self._stopping:
-                trouble = await self._simulate(teams, words)
+                trouble = await self._simulate(words)
                 is_done = trouble is None
         except OSError as error:
             trouble = say("tournament.cannot-start", why=error.strerror or str(error))
@@ -199,23 +204,21 @@ class Tournament:
             self._change(state="done" if is_done else "stopped", trouble=trouble)
             await self._keep()
 
-    async def _simulate(
-        self, teams: "Mapping[str, _TournamentPlayer]", words: list[str]
-    ) -> Phrase | None:
-        """Run `lacoc simulate` with these teams and with more words on its command line.
+    async def _simulate(self, words: list[str]) -> Phrase | None:
+        """Run `lacoc simulate` with the players and with more words on its command line.
 
         Returns:
             Why the command ended early; None if it did not.
         """
         jobs = max(1, (os.cpu_count() or 1) - 1)  # one core is left for the class
         words += ["--jobs", str(jobs), "--record", str(self.recordings), "--leave-out"]
-        self._simulation = await Simulation.start([*teams, *words])
+        self._simulation = await Simulation.start([*self._teams, *words])
         if self._stopping:  # `stop` came while it started
             self._simulation.end()
         has_begun = False
         try:
             async for line in self._simulation.lines():
-                self._take(line, teams)
+                self._take(line)
                 has_begun = has_begun or isinstance(line, BeginLine)
             why = await self._simulation.complaint()
         finally:
@@ -225,8 +228,9 @@ class Tournament:
             return _too_few([one.name for one in self.state.left_out])
         return None if why is None else say("tournament.ended", why=why)
 
-    def _take(self, line: OutputLine, teams: "Mapping[str, _TournamentPlayer]") -> None:
+    def _take(self, line: OutputLine) -> None:
         """Change the state of the tournament by a line that `lacoc simulate` printed."""
+        teams = self._teams
         match line:
             case LeftOutLine():
                 out = teams[line.player].left_out(line)
@@ -235,13 +239,17 @@ class Tournament:
                 self._change(of=line.matches)
             case MatchLine():
                 left, right = (teams[word].name for word in line.players)
+                record = line.record
+                if record and _NOBODY in (left, right):
+                    (self.recordings / record).unlink(missing_ok=True)
+                    record = None
                 played = ClassMatch(
                     left=left,
                     right=right,
                     scores=line.result.scores,
                     winner=line.winner,
                     void=line.result.official == "void",
-                    record=line.record,
+                    record=record,
                 )
                 self.state = msgspec.structs.replace(
                     self.state, matches=(*self.state.matches, played)
