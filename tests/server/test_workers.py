@@ -97,7 +97,7 @@ def test_a_job_has_a_time_limit() -> None:
 
 def test_a_job_of_a_lost_process_is_given_to_another_one() -> None:
     """With `again` a job whose process stops or dies is done by a new process, so often only."""
-    with Workers(1, limit_s=2.0, again=1) as workers:
+    with Workers(1, limit_s=6.0, again=1) as workers:
         first = workers.submit(os.getpid).result()
         os.kill(first, signal.SIGSTOP)  # as while a computer sleeps
         assert workers.submit(os.getpid).result() != first
