@@ -97,6 +97,8 @@ export class Court implements Match {
   readonly live = signal(false);
   /** The gateway speaks another version: only loading the page again helps. */
   readonly outdated = signal(false);
+  /** How much later than the court everything is shown [ms]. */
+  readonly behindMs: ReadonlySignal<number>;
   readonly timeline: Timeline;
   readonly connection: Connection;
   /** How the page hears of the court: by its socket, or in pieces as long as they come. */
@@ -128,6 +130,7 @@ export class Court implements Match {
     private readonly inPieces: InPieces | null = null,
   ) {
     this.sheet = recoloured(this.published);
+    this.behindMs = computed(() => delayMs + 1000 * (this.programme.value?.behind_s ?? 0));
     this.timeline = new Timeline();
     this.connection = new Connection(
       socketUrl(),

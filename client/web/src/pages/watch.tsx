@@ -175,7 +175,7 @@ function Brand() {
   const sheet = court.sheet.value;
   const courts = court.welcome.value?.courts ?? [];
   const current = court.welcome.value?.court ?? setting("court");
-  const delay = court.delayMs / 1000 + (court.programme.value?.behind_s ?? 0);
+  const delay = court.behindMs.value / 1000;
   return (
     <div class="corner left">
       <a class="brand" href="./">

@@ -16,6 +16,9 @@ export type Trouble = "missing" | "lost" | "outdated";
 export class Feed {
   readonly sheet = signal<ContestSheet | null>(null);
   readonly trouble = signal<Trouble | null>(null);
+  /** How much later a newer sheet is shown: no result may come before its late picture [ms]. */
+  behindMs = 0;
+  #newest: ContestSheet | null = null;
   #text = "";
   #timer = -1;
   #users = 0;
@@ -47,9 +50,19 @@ export class Feed {
     if (!document.hidden) this.trouble.value = await this.#get();
     if (this.#timer < 0) return;
     clearTimeout(this.#timer); // two looks at once
-    const now = this.sheet.peek();
+    const now = this.#newest;
     const waitMs = now && stateOf(now) === "over" ? OVER_MS : AGAIN_MS;
     this.#timer = window.setTimeout(() => void this.#look(), waitMs);
+  }
+
+  /** Show a sheet; at once if there is none yet. */
+  #show(sheet: ContestSheet): void {
+    this.#newest = sheet;
+    const show = () => {
+      this.sheet.value = sheet;
+    };
+    if (this.behindMs && this.sheet.peek()) window.setTimeout(show, this.behindMs);
+    else show();
   }
 
   async #get(): Promise<Trouble | null> {
@@ -63,7 +76,7 @@ export class Feed {
       const sheet = JSON.parse(text) as ContestSheet;
       if (sheet.version !== VERSION) return "outdated";
       this.#text = text;
-      this.sheet.value = sheet;
+      this.#show(sheet);
       return null;
     } catch {
       return "lost"; // no answer, or half a file

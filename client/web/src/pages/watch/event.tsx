@@ -25,9 +25,13 @@ import "../../ui/opening.css";
 const GAMES_MOST = 3;
 const ROWS_MOST = 8;
 
-/** Keep the sheet of the event new, for all that shows teams, tables and games. */
+/** Keep the sheet of the event as new as the court's picture, for teams, tables and games. */
 export function useEvent(court: Court): void {
   const desk = court.welcome.value?.desk;
+  const behindMs = court.behindMs.value;
+  useEffect(() => {
+    eventFeed.behindMs = behindMs;
+  }, [behindMs]);
   useEffect(() => (desk ? eventFeed.start() : undefined), [desk]);
 }
 
