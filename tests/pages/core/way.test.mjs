@@ -86,7 +86,16 @@ for (const [name, mine, looks, found] of [
   ["has heard nothing of the court yet", 5, [[null, 0]], "wait"],
   ["still holds it", 5, [[health(5, 20), 0]], "ask"],
   ["finds it free, because the court was restarted", 5, [[health(0, null), 0]], "ask"],
-  ["finds somebody who was not heard lately", 5, [[health(7, 2000), 0]], "ask"],
+  ["finds somebody who is silent", 5, [[health(7, 2000), 0]], "wait"],
+  [
+    "finds that nobody is heard",
+    5,
+    [
+      [health(7, 2000), 0],
+      [health(7, 5000), 3000],
+    ],
+    "ask",
+  ],
   [
     "finds somebody who may be its own gateway",
     5,
@@ -97,11 +106,22 @@ for (const [name, mine, looks, found] of [
     "wait",
   ],
   [
-    "finds that this one falls silent",
+    "finds somebody who stutters",
     5,
     [
       [health(7, 20), 0],
       [health(7, 1600), 2500],
+      [health(7, 20), 3000],
+    ],
+    "yield",
+  ],
+  [
+    "finds that this one fell silent",
+    5,
+    [
+      [health(7, 20), 0],
+      [health(7, 1600), 2500],
+      [health(7, 3100), 3000],
     ],
     "ask",
   ],
@@ -111,7 +131,7 @@ for (const [name, mine, looks, found] of [
     [
       [null, 0],
       [health(7, 20), 500],
-      [health(7, 20), 3000],
+      [health(7, 20), 3500],
     ],
     "yield",
   ],

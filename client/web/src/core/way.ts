@@ -79,12 +79,13 @@ export class Driver {
   }
 }
 
-/** Whoever is heard for so long holds the seat; a page's own gateway falls silent sooner. */
-const OTHERS_MS = 3000;
+/** So long a page looks who drives its seat; its own gateway falls silent sooner. */
+const LOOK_MS = 3000;
 
 /** Decides whether a page that comes back, such as a tablet that wakes, may take its seat again. */
 export class Return {
   private sinceMs: number | null = null;
+  private heardMs: number | null = null;
 
   /**
    * Look at who holds the seat now.
@@ -102,9 +103,16 @@ export class Return {
     nowMs: number,
   ): "ask" | "wait" | "yield" {
     const holder = health?.seats.find(({ id }) => id === seat)?.session;
-    const isOthers = session !== 0 && holder !== session && (!health || isDriven(health, seat));
-    this.sinceMs = isOthers ? (this.sinceMs ?? nowMs) : null;
-    if (this.sinceMs === null) return "ask";
-    return health && nowMs - this.sinceMs >= OTHERS_MS ? "yield" : "wait";
+    if (session === 0 || (health && (!holder || holder === session))) {
+      this.sinceMs = this.heardMs = null;
+      return "ask";
+    }
+    if (!health) return "wait";
+    this.sinceMs ??= nowMs;
+    const isHeard = isDriven(health, seat);
+    if (isHeard || this.heardMs === null) this.heardMs = nowMs;
+    if (isHeard) return nowMs - this.sinceMs < LOOK_MS ? "wait" : "yield";
+    // A short silence gives no seat away.
+    return nowMs - this.heardMs < LOOK_MS ? "wait" : "ask";
   }
 }
