@@ -226,6 +226,41 @@ def test_a_server_that_takes_nothing_is_away(
         streamer.sender.end()
 
 
+def test_a_folder_is_continued(picture: bytes, tmp_path: Path) -> None:
+    """A stream that is started again uses no name of a segment that players know."""
+    names: list[set[str]] = []
+    for _ in range(2):
+        streamer = Streamer(target(f"{tmp_path}"), picture)
+        sent = streamer.sender
+        streamer.until(lambda sent=sent: sent.sent >= 3 * FPS)  # type: ignore[misc]
+        streamer.sender.end()
+        names.append({one.name for one in tmp_path.glob("*.ts")})
+    listed = (tmp_path / "index.m3u8").read_text()
+    assert names[0] < names[1]
+    assert all(name in listed for name in names[1])
+
+
+def test_a_sending_process_that_cannot_start_is_tried_again(
+    picture: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No free process at one moment does not end a stream to a server."""
+    start, failed = SendingProcess._start, []
+
+    def first_fails(process: SendingProcess) -> Any:
+        if not failed:
+            failed.append(True)
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+        return start(process)
+
+    monkeypatch.setattr(SendingProcess, "_start", first_fails)
+    monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
+        streamer.until(lambda: streamer.sender.sent)
+        assert streamer.told == ["stream.away", "stream.back"]
+        streamer.sender.end()
+
+
 def test_a_sending_process_that_is_killed_is_started_again(picture: bytes, tmp_path: Path) -> None:
     """What it wrote before stays; the next part begins a new stream."""
     process = SendingProcess(target(f"{tmp_path}/out.mkv"), SIZE, FPS)

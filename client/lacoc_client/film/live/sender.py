@@ -85,6 +85,9 @@ class Sender:
         process = SendingProcess(self._target, self._size, self._fps)
         try:
             self._send_to(process)
+        except Exception as error:  # a bug, but the stream must not go on without pictures
+            self.failed = f"{type(error).__name__}: {error}"
+            raise
         finally:
             process.end()
 

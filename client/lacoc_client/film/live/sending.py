@@ -63,7 +63,10 @@ class SendingProcess:
 
     def send(self, part: Part) -> NotSent | None:
         """Send a part; return None when the encoder has it, else why it was not sent."""
-        process, link = self._running = self._running or self._start()
+        try:
+            process, link = self._running = self._running or self._start()
+        except OSError as error:  # no process or memory is free now
+            return NotSent(error.strerror or str(error))
         with suppress(OSError, EOFError):
             link.send(part)
             if link.poll(self._wait_s):

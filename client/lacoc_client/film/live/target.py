@@ -9,8 +9,12 @@ from lacoc_shared.mistakes import UserError
 from lacoc_shared.words import say
 
 _SILENT_US = "10000000"
-"""FFmpeg gives up a connection over which nothing passes for this long [us]; not so with RTMP."""
+"""FFmpeg gives up a connection over which nothing passes for this long [us]; RTMP has no such
+option."""
 _LIST = "index.m3u8"
+_FLAGS = "delete_segments+append_list"
+"""A stream that is started again goes on with the list and its numbers, for players that are open.
+"""
 _FORMATS = {
     ".mp4": ("mp4", {"movflags": "frag_keyframe+empty_moov+default_base_moof"}),
     ".mkv": ("matroska", {}),
@@ -45,7 +49,7 @@ def target(wanted: str) -> Target:
     """Return the target that a user named for a live stream.
 
     An older recording in a file of this name is kept under a numbered name; an older .m3u8, which
-    lists the last seconds only, is written over.
+    lists the last seconds only, is continued.
 
     Args:
         wanted: an address that begins with rtmp://, rtmps://, srt://, tcp:// or udp://; a folder,
@@ -59,7 +63,8 @@ def target(wanted: str) -> Target:
     if is_address:
         if scheme not in _SERVERS:
             raise UserError(say("stream.bad-target", target=_without_key(wanted)))
-        return Target(wanted, _SERVERS[scheme], {"rw_timeout": _SILENT_US}, is_remote=True)
+        options = {} if scheme in ("rtmp", "rtmps") else {"rw_timeout": _SILENT_US}
+        return Target(wanted, _SERVERS[scheme], options, is_remote=True)
     path = Path(wanted)
     is_new = not path.suffix and path.parent.is_dir()  # else the address lacks its beginning
     if path.is_dir() or is_new or wanted.endswith("/"):
@@ -68,7 +73,7 @@ def target(wanted: str) -> Target:
     if not path.parent.is_dir():
         raise UserError(say("film.no-folder", folder=str(path.parent)))
     if path.suffix == ".m3u8":
-        options = {"hls_time": "2", "hls_list_size": "8", "hls_flags": "delete_segments"}
+        options = {"hls_time": "2", "hls_list_size": "8", "hls_flags": _FLAGS}
         return Target(str(path), "hls", options)
     if path.suffix not in _FORMATS:
         raise UserError(say("stream.bad-target", target=wanted))
