@@ -261,6 +261,22 @@ def test_a_sending_process_that_cannot_start_is_tried_again(
         streamer.sender.end()
 
 
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_bug_in_the_sender_ends_the_stream(
+    picture: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stream does not go on without pictures: it has failed, and says why."""
+
+    def broken(process: SendingProcess, part: Part) -> None:
+        raise RuntimeError("a bug")
+
+    monkeypatch.setattr(SendingProcess, "send", broken)
+    streamer = Streamer(target("tcp://127.0.0.1:1"), picture)
+    streamer.until(lambda: streamer.sender.failed)
+    assert streamer.sender.failed == "RuntimeError: a bug"
+    streamer.sender.end()
+
+
 def test_a_sending_process_that_is_killed_is_started_again(picture: bytes, tmp_path: Path) -> None:
     """What it wrote before stays; the next part begins a new stream."""
     process = SendingProcess(target(f"{tmp_path}/out.mkv"), SIZE, FPS)

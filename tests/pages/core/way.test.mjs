@@ -138,7 +138,18 @@ for (const [name, mine, looks, found] of [
 ]) {
   test(`a page that comes back to its seat and ${name}: ${found}`, () => {
     const coming = new Return();
-    const found_all = looks.map(([seen, nowMs]) => coming.look(seen, "left", mine, nowMs));
-    assert.equal(found_all.at(-1), found);
+    const all = looks.map(([seen, nowMs]) => coming.look(seen, "left", mine, nowMs));
+    assert.equal(all.at(-1), found);
   });
 }
+
+test("a page that has yielded looks as long again when it comes back once more", () => {
+  const coming = new Return();
+  const look = (nowMs) => coming.look(health(7, 20), "left", 5, nowMs);
+  assert.deepEqual([0, 3000, 60_000, 62_900, 63_000].map(look), [
+    ...["wait", "yield", "wait", "wait", "yield"],
+  ]);
+  assert.equal(look(90_000), "wait");
+  assert.equal(coming.look(null, "left", 5, 92_000), "wait", "another break");
+  assert.equal(look(93_000), "wait");
+});

@@ -102,16 +102,22 @@ export class Return {
     session: number,
     nowMs: number,
   ): "ask" | "wait" | "yield" {
-    const holder = health?.seats.find(({ id }) => id === seat)?.session;
-    if (session === 0 || (health && (!holder || holder === session))) {
-      this.sinceMs = this.heardMs = null;
-      return "ask";
-    }
+    const found = this.judge(health, seat, session, nowMs);
+    if (!health || found !== "wait") this.sinceMs = this.heardMs = null; // each return begins anew
+    return found;
+  }
+
+  private judge(health: Health | null, seat: string, session: number, nowMs: number) {
+    if (session === 0) return "ask";
     if (!health) return "wait";
+    const holder = health.seats.find(({ id }) => id === seat)?.session;
+    if (!holder || holder === session) return "ask";
     this.sinceMs ??= nowMs;
-    const isHeard = isDriven(health, seat);
-    if (isHeard || this.heardMs === null) this.heardMs = nowMs;
-    if (isHeard) return nowMs - this.sinceMs < LOOK_MS ? "wait" : "yield";
+    this.heardMs ??= nowMs;
+    if (isDriven(health, seat)) {
+      this.heardMs = nowMs;
+      return nowMs - this.sinceMs < LOOK_MS ? "wait" : "yield";
+    }
     // A short silence gives no seat away.
     return nowMs - this.heardMs < LOOK_MS ? "wait" : "ask";
   }
