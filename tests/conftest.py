@@ -1,5 +1,6 @@
 """Settings of all tests: which tests run, and how many examples check each property."""
 
+import gc
 import os
 import signal
 
@@ -45,6 +46,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.hook.pytest_deselected(items=[item for item in items if item in others])
     wanted = [item for item in items if item not in others]
     items[:] = spread(wanted, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")))
+
+
+def pytest_collection_finish() -> None:
+    """Take what collecting made out of the garbage collector, which else visits it all the time."""
+    gc.freeze()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -1,9 +1,11 @@
 """Tests of contests that are played without a network, also after kills in between."""
 
+import json
 import os
 import re
 import shutil
 import signal
+from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
 
@@ -156,6 +158,27 @@ def test_a_contest_that_runs_is_not_run_again(copied: Path) -> None:
     with ContestFolder(copied).alone(), pytest.raises(UserError, match="another program"):
         small_contest.play(copied)
     assert small_contest.play(copied) == 0
+
+
+def test_the_sheet_has_what_is_decided_after_the_end(
+    copied: Path, lacoc: Callable[..., tuple[int, str, str]]
+) -> None:
+    """Pages and films read it. While a contest runs, nobody but its office writes it."""
+    small_contest.play(copied)
+
+    def counted() -> list[str]:
+        matches = json.loads(copied.with_suffix(".json").read_text())["stages"][0]["matches"]
+        return [match["pairing"]["id"] for match in matches if match.get("games")]
+
+    words = ("contest", "decide", "void", "--reason", "x", "--yes", "--contest", copied)
+    first, second, *others = counted()
+    assert lacoc(*words, first)[0] == 0
+    assert counted() == [second, *others]
+    with ContestFolder(copied).alone():
+        assert lacoc(*words, second)[0] == 0
+    assert counted() == [second, *others]
+    assert lacoc("contest", "withdraw", "Eve", "--yes", "--contest", copied)[0] == 0
+    assert second not in counted()
 
 
 def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:

@@ -221,8 +221,8 @@ def test_a_reel_finds_the_records(played: Path) -> None:
     A film of the contest's own folder takes records of the same names, in the same order.
     """
     film_contest = pytest.importorskip("lacoc_client.film.contest")
-    published = film_contest.records(played / "published")
-    own = film_contest.records(played)
+    published = [game.record for game in film_contest.games(played / "published")]
+    own = [game.record for game in film_contest.games(played)]
 
     rows = csv.DictReader(io.StringIO((played / "published" / GAMES).read_text("utf-8-sig")))
     names = [Path(row["record"]).name for row in rows if row["outcome"] != "void"]

@@ -359,4 +359,4 @@ def test_a_bad_contest_is_told(text: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "x.mcap").touch()  # a name of the sheet leads to no other folder
     (folder / "contest.json").write_text(text)
     with pytest.raises(UserError, match=said):
-        contest.records(folder)
+        contest.games(folder)

@@ -15,7 +15,7 @@ from lacoc_client.film.moments import Moment
 from lacoc_client.film.plan import Shot
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 
 ENDS = st.tuples(st.integers(0, 2000), st.integers(0, 9000)).map(
     lambda ends: (ends[0], ends[0] + ends[1])
@@ -36,9 +36,9 @@ def test_a_shot_has_a_picture_each_interval(ends: tuple[int, int], fps: int) -> 
         assert picture.beat == pytest.approx(first + index * BEATS_PER_S / fps)
 
 
-@given(ENDS, st.lists(st.integers(-100, 12_000), max_size=8), st.booleans())
+@given(ENDS, st.lists(st.integers(-100, 12_000), max_size=8), st.none() | st.integers(-100, 12_000))
 def test_shots_are_in_order_and_within_the_match(
-    ends: tuple[int, int], beats: list[int], opening: bool
+    ends: tuple[int, int], beats: list[int], opening: int | None
 ) -> None:
     """Shots lie in the match, do not touch, and show each moment; the last ends with the match."""
     first, last = ends
@@ -47,8 +47,7 @@ def test_shots_are_in_order_and_within_the_match(
     assert all(first <= shot.first <= shot.last <= last for shot in shots)
     assert all(one.last + 1 < other.first for one, other in pairwise(shots))
     assert shots[-1].last == last
-    assert not opening or shots[0].first == first
-    for beat in beats:
+    for beat in [*beats, *([] if opening is None else [opening])]:
         shown = any(shot.first <= beat <= shot.last for shot in shots)
         assert shown or not first <= beat <= last
 
@@ -128,3 +127,22 @@ def test_moments_outside_of_the_match_take_no_place() -> None:
     assert part.shots(500, 2000) == alone.shots(500, 2000)
     with pytest.raises(UserError, match="500 to 2000"):
         FilmPart(cast(Any, None), (), count=5, chosen=outside).shots(500, 2000)
+
+
+@pytest.mark.parametrize(
+    ("joined", "begin"),
+    [([], 0), ([2] * 9, 5), ([0, 1, 2, 2, 2, 2, 2, 2, 2], 5), ([0] * 7 + [1, 2], 8), ([0] * 9, 9)],
+    ids=["no lobby", "long together", "together", "just together", "never"],
+)
+def test_a_reel_shows_two_teams_before_the_count_down(joined: list[int], begin: int) -> None:
+    """Its opening begins so long before the count-down, but not while a team has not come."""
+    seats = [
+        [SimpleNamespace(flags=SeatFlag.JOINED if seat < count else 0) for seat in range(2)]
+        for count in joined
+    ]
+    phases = [Phase.LOBBY] * len(joined) + [Phase.COUNTDOWN, Phase.PLAYING, Phase.OFFICIAL]
+    frames: list[tuple[int, Any]] = [
+        (beat, SimpleNamespace(phase=phase, seats=seats[beat] if beat < len(seats) else []))
+        for beat, phase in enumerate(phases)
+    ]
+    assert moments.opening_of_frames(frames, 4) == begin

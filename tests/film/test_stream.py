@@ -1,13 +1,17 @@
 """Tests of `lacoc stream`: its pace, its sound, and what a video server gets of a real match."""
 
+import os
 import signal
 import socket
+import subprocess
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, suppress
 from fractions import Fraction
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +22,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lacoc_process import Lacoc, environment
 from page_client import PageClient
+from playwright.sync_api import Error
 from ports import free_port
 from show import decide, playing
 from venue import Venue
@@ -28,10 +33,14 @@ from lacoc_client.film import camera_page
 from lacoc_client.film.live import sender, sending, stream
 from lacoc_client.film.live.mixer import Mixer
 from lacoc_client.film.live.pace import PicturePace
+from lacoc_client.film.live.segments import SegmentWatch
 from lacoc_client.film.live.sender import LivePicture, Sender
 from lacoc_client.film.live.sending import SOUND_HZ, NotSent, Part, SendingProcess
 from lacoc_client.film.live.target import Target, target
+from lacoc_client.film.live.waiting import PageWaiting
+from lacoc_client.film.live.watchdog import watched
 from lacoc_client.film.look import Quality, View
+from lacoc_client.play.stopping import unreached
 from lacoc_shared.mistakes import UserError
 from lacoc_shared.seat import BEATS_PER_S
 from lacoc_shared.words import Phrase, render
@@ -158,6 +167,7 @@ def test_what_a_server_does_is_told_once(picture: bytes, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(sender, "SendingProcess", Counted)
     monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
+    monkeypatch.setattr(sender, "_SURE_S", 0.2)
     with socket.socket() as server:
         server.bind(("127.0.0.1", 0))
         streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
@@ -169,6 +179,29 @@ def test_what_a_server_does_is_told_once(picture: bytes, monkeypatch: pytest.Mon
         server.accept()[0].close()
         streamer.until(lambda: len(streamer.told) > 2)
         assert streamer.told[2] == "stream.away"
+        streamer.sender.end()
+
+
+def test_a_server_that_refuses_the_key_is_not_back_each_time(
+    picture: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes the first pictures, then ends the connection, each time: that is told once."""
+    monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
+    ended = []
+
+    def refuse(server: socket.socket) -> None:
+        with suppress(OSError):
+            while True:
+                connection = server.accept()[0]
+                connection.recv(1)
+                connection.close()
+                ended.append(True)
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        threading.Thread(target=refuse, args=(server,), daemon=True).start()
+        streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
+        streamer.until(lambda: len(ended) > 3)
+        assert streamer.told == ["stream.refused"]
         streamer.sender.end()
 
 
@@ -217,6 +250,7 @@ def test_a_server_that_takes_nothing_is_away(
 ) -> None:
     """A server that accepts and then says nothing, or reads nothing, stops no other thread."""
     monkeypatch.setattr(sending, "_SILENT_S", 1.0)
+    monkeypatch.setattr(sender, "_SURE_S", 0.5)
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2048)
         address = f"{protocol}://127.0.0.1:{server.getsockname()[1]}/live/key"
@@ -240,6 +274,53 @@ def test_a_folder_is_continued(picture: bytes, tmp_path: Path) -> None:
     assert all(name in listed for name in names[1])
 
 
+def test_a_segment_that_is_not_on_the_disk_is_found(tmp_path: Path) -> None:
+    """It is empty, cut, or missing; or the list stays as it is, though pictures go on."""
+    path = tmp_path / "index.m3u8"
+    watch = SegmentWatch(path, 3)
+    assert watch.is_whole()
+    for number, (size, is_whole) in enumerate(
+        [(376, True), (0, False), (4096, False), (188, True)]
+    ):
+        (tmp_path / f"index{number}.ts").write_bytes(bytes(size))
+        path.unlink(missing_ok=True)
+        path.write_text(f"#EXTM3U\n#EXTINF:2,\nindex{number}.ts\n")
+        assert watch.is_whole() is is_whole, size
+    assert [watch.is_whole() for _ in range(4)] == [True, True, False, False]
+    path.write_text("gone\n")
+    assert not watch.is_whole()
+    path.unlink()
+    path.write_text("")
+    assert not watch.is_whole()
+
+
+def test_a_folder_whose_segments_are_not_written_ends_the_stream(
+    picture: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """FFmpeg itself says nothing of it; the operator is told."""
+    monkeypatch.setattr(sending, "_SPAWN", get_context("fork"))
+    monkeypatch.setattr(SegmentWatch, "is_whole", lambda _: False)
+    streamer = Streamer(target(f"{tmp_path}"), picture)
+    streamer.until(lambda: streamer.sender.failed)
+    assert isinstance(streamer.sender.failed, Phrase)
+    assert streamer.sender.failed.code == "stream.no-segment"
+    streamer.sender.end()
+
+
+def test_each_reason_for_a_page_without_a_match_is_told_once() -> None:
+    """It is told when it has stood for some seconds, whatever seconds it counts; and its end."""
+    waiting = PageWaiting()
+    looks = [
+        *("Connecting", "", "in 20 s", "in 19 s", "in 18 s", "in 17 s", "in 16 s", "no court"),
+        *("no court", "", "no court", "no court", "no court", "no court", "", "", "", "", ""),
+    ]
+    told = [waiting.see(text, float(now_s)) for now_s, text in enumerate(looks)]
+    found = {at: render(one) for at, one in enumerate(told) if one is not None}
+    assert list(found) == [5, 13, 17], found
+    assert "in 17 s" in found[5]
+    assert "no court" in found[13]
+
+
 def test_a_sending_process_that_cannot_start_is_tried_again(
     picture: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -254,9 +335,10 @@ def test_a_sending_process_that_cannot_start_is_tried_again(
 
     monkeypatch.setattr(SendingProcess, "_start", first_fails)
     monkeypatch.setattr(sender, "_AGAIN_S", 0.01)
+    monkeypatch.setattr(sender, "_SURE_S", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as server:
         streamer = Streamer(target(f"tcp://127.0.0.1:{server.getsockname()[1]}"), picture)
-        streamer.until(lambda: streamer.sender.sent)
+        streamer.until(lambda: len(streamer.told) > 1)
         assert streamer.told == ["stream.away", "stream.back"]
         streamer.sender.end()
 
@@ -275,6 +357,17 @@ def test_a_bug_in_the_sender_ends_the_stream(
     streamer.until(lambda: streamer.sender.failed)
     assert streamer.sender.failed == "RuntimeError: a bug"
     streamer.sender.end()
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="Windows blocks no signal")
+def test_ctrl_c_does_not_reach_a_process_that_is_still_starting() -> None:
+    """Ctrl-C in a terminal reaches all processes: the stream itself must end the others."""
+    with unreached():
+        child = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    child.send_signal(signal.SIGINT)
+    child.communicate(b"\n")
+    assert child.returncode == 0
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_a_sending_process_that_is_killed_is_started_again(picture: bytes, tmp_path: Path) -> None:
@@ -327,8 +420,10 @@ def test_the_page_of_an_error_is_not_streamed(
 
         def opened() -> str:
             with camera_page.window(look) as (page, _):
-                running._open(page, lambda: False)
-                return page.title()
+                assert page.context.browser is not None
+                with watched(page.context.browser, lambda: False, LIMIT_S) as dog:
+                    running._open(page, lambda: False, dog)
+                    return page.title()
 
         with ThreadPoolExecutor(1) as aside:  # this thread may have a browser of other tests
             assert aside.submit(opened).result() == "page"
@@ -336,6 +431,32 @@ def test_the_page_of_an_error_is_not_streamed(
         proxy.shutdown()
     assert [one.code for one in told] == ["stream.no-page", "stream.page-back"]
     assert "HTTP 502" in render(told[0])
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("with_browser")
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no signal here makes a process hang")
+def test_a_browser_that_hangs_is_ended() -> None:
+    """Whoever waits for it gets an error, as if it had crashed, and no process is left."""
+    look = look_of("320x180", View.AUTO, Quality.LOW, True, None)
+
+    def hangs() -> Phrase | None:
+        with camera_page.window(look) as (page, _):
+            assert page.context.browser is not None
+            tools = page.context.browser.new_browser_cdp_session()
+            found = tools.send("SystemInfo.getProcessInfo")["processInfo"]
+            renderers = [one["id"] for one in found if one["type"] == "renderer"]
+            with watched(page.context.browser, lambda: False, 1.0) as dog:
+                for renderer in renderers:
+                    os.kill(renderer, signal.SIGSTOP)
+                with pytest.raises(Error):
+                    page.evaluate("document.title")
+            return dog.why
+
+    with ThreadPoolExecutor(1) as aside:  # this thread may have a browser of other tests
+        why = aside.submit(hangs).result()
+    assert why is not None
+    assert why.code == "stream.browser-hangs"
 
 
 def streaming(venue: Venue, where: str, stack: ExitStack) -> Lacoc:

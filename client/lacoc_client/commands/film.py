@@ -116,7 +116,10 @@ def film_command(
     from lacoc_client.film import moments as ranked
 
     if _is_contest(record):
-        parts = [film.part(path, film.REEL, opening=True) for path in contest.records(record)]
+        parts = [
+            replace(film.part(game.record, film.REEL, opening=True), counted=game.scores)
+            for game in contest.games(record)
+        ]
         look = replace(look, overlay=True)
     else:
         parts = [film.part(record, film.HIGHLIGHTS if highlights else None)]

@@ -23,6 +23,7 @@ def stream_command(
         str,
         typer.Argument(
             metavar="TARGET",
+            envvar="LACOC_STREAM",
             help="Where it goes: an address of a video platform (rtmp://..., with the key of the "
             "stream), a folder (HLS), or a file that ends in .m3u8, .mkv, .mp4 or .ts.",
         ),

@@ -22,6 +22,7 @@ from lacoc_client.film.chromium import FLAGS, find
 from lacoc_client.film.look import Look
 from lacoc_client.film.plan import Picture
 from lacoc_client.film.shots import PNG, Shots
+from lacoc_client.play.stopping import unreached
 from lacoc_shared.command.scratch import Scratch
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.words import say
@@ -190,7 +191,8 @@ def _started(folder: Path) -> Iterator[Playwright]:
             before = {name: os.environ.get(name) for name in _TEMPORARY}
             os.environ.update(dict.fromkeys(_TEMPORARY, str(folder)))
             try:
-                playwright = stack.enter_context(sync_playwright())
+                with unreached():
+                    playwright = stack.enter_context(sync_playwright())
             finally:
                 for name, value in before.items():
                     if value is None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from lacoc_client.web.gateway import contest_sheet
 from lacoc_shared.contest import file as contests
@@ -12,8 +13,16 @@ _FOLDERS = ("records", "recordings", ".")
 """Folders in which records may be: in a published folder, and beside a contest file."""
 
 
-def records(contest: Path) -> list[Path]:
-    """Return the records of a contest's games, except void ones, as paths in the sheet's order.
+class ContestGame(NamedTuple):
+    """A game of a contest, of which a reel shows something."""
+
+    record: Path
+    scores: tuple[int, ...]
+    """The points that count, by seat."""
+
+
+def games(contest: Path) -> list[ContestGame]:
+    """Return a contest's games with their records, except void ones, in the sheet's order.
 
     Args:
         contest: a contest file; or a published folder or that of a contest file, with
@@ -39,10 +48,10 @@ def records(contest: Path) -> list[Path]:
     except ValueError as error:
         told = printable(str(error), 120)
         raise UserError(say("film.bad-sheet", file=str(path), error=told)) from None
-    names = [game.record for game in sheet.games if game.record and game.outcome != "void"]
-    if not names:
+    played = [game for game in sheet.games if game.record and game.outcome != "void"]
+    if not played:
         raise UserError(say("film.no-games", folder=str(folder)))
-    return [_found(places, name) for name in names]
+    return [ContestGame(_found(places, game.record), game.scores) for game in played]
 
 
 def _found(places: Sequence[Path], name: str) -> Path:

@@ -44,11 +44,18 @@ class FilmPart:
     """The moments to choose from; empty: all moments in which the score changed."""
     opening: bool = False
     """Whether the card with the teams is shown first."""
+    counted: tuple[int, ...] = ()
+    """The points that count in the contest, by seat; empty: there is no contest."""
 
     @property
     def moments(self) -> list[Moment]:
         """The moments of the match from which those that the film shows are chosen."""
         return list(self.chosen) or moments.by_score(self.record)
+
+    @property
+    def decided(self) -> tuple[int, ...]:
+        """The points that count, if the organiser gave others than the court's; else empty."""
+        return () if self.counted == moments.final_scores(self.record) else self.counted
 
     def shots(self, first: int, last: int) -> list[Shot]:
         """Return the shots of the match, in order.
@@ -66,7 +73,8 @@ class FilmPart:
         if self.chosen and not inside:
             raise UserError(say("film.moments-outside", first=first, last=last))
         best = moments.largest(inside, self.count)
-        return plan.highlights(best, first, last, opening=self.opening)
+        opening = moments.opening(self.record, plan.OPENING_BEATS) if self.opening else None
+        return plan.highlights(best, first, last, opening=opening)
 
     def still(self, first: int, last: int) -> int:
         """Return the beat of the match's still: just after its largest moment.
@@ -133,7 +141,7 @@ def still(one: FilmPart, out: Path, look: Look) -> None:
     """
 
     def drawn() -> bytes:
-        with served(one.paths) as site, camera_page(site.address(look), look) as page:
+        with served(one.paths, one.decided) as site, camera_page(site.address(look), look) as page:
             return page.picture(_way(one.still(page.first, page.last), page.first))
 
     # In a thread of its own, as those of a film: a notebook has an event loop in this one, and
@@ -145,7 +153,10 @@ def still(one: FilmPart, out: Path, look: Look) -> None:
 def _add(
     film: Movie, one: FilmPart, look: Look, fps: int, browsers: int, progress: Progress
 ) -> None:
-    with served(one.paths) as site, drawn_by(browsers, site.address(look), look) as crew:
+    with (
+        served(one.paths, one.decided) as site,
+        drawn_by(browsers, site.address(look), look) as crew,
+    ):
         pictures = plan.pictures(one.shots(*crew.ends()), fps)
         before = film.count
         film.hear(crew.begin(pictures, fps))

@@ -1,7 +1,7 @@
 """The moments of a match that are worth showing, by the change of the score or from a file."""
 
 from collections.abc import Iterable, Sequence
-from itertools import groupby
+from itertools import groupby, takewhile
 from pathlib import Path
 
 import msgspec
@@ -10,7 +10,7 @@ from lacoc_shared import codec
 from lacoc_shared.messages import Frame
 from lacoc_shared.mistakes import UserError, printable
 from lacoc_shared.record.reader import Record
-from lacoc_shared.seat import BEATS_PER_S, Phase
+from lacoc_shared.seat import BEATS_PER_S, Phase, SeatFlag
 from lacoc_shared.words import say
 
 TOGETHER_BEATS = BEATS_PER_S
@@ -61,6 +61,42 @@ def played(record: Record) -> list[int]:
         UserError: if a frame of the record can't be read.
     """
     return [beat for beat, frame in _frames(record) if frame.phase == Phase.PLAYING]
+
+
+def final_scores(record: Record) -> tuple[int, ...]:
+    """Return the points at the end of a record, by seat; empty if it has no frame.
+
+    Raises:
+        UserError: if a frame of the record can't be read.
+    """
+    frames = _frames(record)
+    return tuple(seat.score for seat in frames[-1][1].seats) if frames else ()
+
+
+def opening(record: Record, length: int) -> int:
+    """Return the beat from which to show the teams, for so many beats before the count-down.
+
+    While a team has not joined there is nobody to show: then it is a later beat.
+
+    Raises:
+        UserError: if a frame of the record can't be read.
+    """
+    return opening_of_frames(_frames(record), length)
+
+
+def opening_of_frames(frames: Sequence[tuple[int, Frame]], length: int) -> int:
+    """Return the beat from which to show the teams; see `opening`.
+
+    Args:
+        frames: the frames with their beats, in rising order.
+        length: how long the teams are shown [beats].
+    """
+    before = [*takewhile(lambda one: one[1].phase < Phase.COUNTDOWN, frames)]
+    end = before[-1][0] + 1 if before else 0
+    together = [
+        beat for beat, frame in before if all(seat.flags & SeatFlag.JOINED for seat in frame.seats)
+    ]
+    return max(end - length, together[0] if together else end)
 
 
 def _frames(record: Record) -> list[tuple[int, Frame]]:

@@ -45,7 +45,7 @@ def whole(first: int, last: int) -> list[Shot]:
 
 
 def highlights(
-    moments: Iterable[Moment], first: int, last: int, *, opening: bool = False
+    moments: Iterable[Moment], first: int, last: int, *, opening: int | None = None
 ) -> list[Shot]:
     """Return the shots of some moments, and of the end of the match, in the order of time.
 
@@ -55,15 +55,16 @@ def highlights(
         moments: the moments to show, in any order; a moment outside of the match is left out.
         first: beat at which a replay begins.
         last: beat at which it ends.
-        opening: whether to show the beginning of the match too.
+        opening: the beat from which the card with the teams is shown too; None: it is not.
     """
     wanted = [
         Shot(max(first, moment.beat - RUN_UP_BEATS), min(last, moment.beat + AFTER_BEATS))
         for moment in moments
         if first <= moment.beat <= last
     ]
-    if opening:
-        wanted.append(Shot(first, min(last, first + OPENING_BEATS)))
+    if opening is not None:
+        begin = min(max(first, opening), last)
+        wanted.append(Shot(begin, min(last, begin + OPENING_BEATS)))
     wanted.append(Shot(max(first, last - END_BEATS), last))
     joined: list[Shot] = []
     for shot in sorted(wanted, key=lambda shot: shot.first):

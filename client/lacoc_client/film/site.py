@@ -31,6 +31,8 @@ class FilmSite:
     """Address of the site, such as "http://127.0.0.1:40000"."""
     files: tuple[str, ...]
     """The parts of the record, by the names under which they are served."""
+    decided: tuple[int, ...] = ()
+    """The points by seat that the organiser of the contest gave instead of the court's."""
 
     def address(self, look: Look) -> str:
         """Return the address of the page that shows the record, in the look of the film."""
@@ -42,16 +44,18 @@ class FilmSite:
             ("split", "1" if look.view == _SPLIT else "0"),
             ("cam", "auto" if look.view == _SPLIT else look.view),
             ("lang", look.language),
+            *(("decided", str(points)) for points in self.decided),
         ]
         return f"{self.base}{_PATH}?{urlencode(query)}"
 
 
 @contextmanager
-def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
+def served(paths: Sequence[Path], decided: tuple[int, ...] = ()) -> Iterator[FilmSite]:
     """Serve the film's page and a record until the `with` block ends.
 
     Args:
         paths: the record's files, in order.
+        decided: as in `FilmSite`.
 
     Raises:
         UserError: if the pages are not built, or a file can't be read.
@@ -75,7 +79,7 @@ def served(paths: Sequence[Path]) -> Iterator[FilmSite]:
         )
         serving.start()
         try:
-            yield FilmSite(opened.url, names)
+            yield FilmSite(opened.url, names, decided)
         finally:
             stopped.set()
             serving.join()

@@ -70,3 +70,18 @@ test("a stream takes a final result as read after some time", (context) => {
   context.mock.timers.tick(1000);
   assert.ok(between.isOn.value);
 });
+
+test("each final result to which the director cuts is shown for this time", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const { court, between } = shown(Phase.OFFICIAL);
+  between.beginAfter(15_000);
+  context.mock.timers.tick(10_000);
+  court.programme.value = { court: "south" };
+  context.mock.timers.tick(14_000);
+  assert.ok(!between.isRead.value, "not for the rest of the first one's time");
+  context.mock.timers.tick(1000);
+  assert.ok(between.isRead.value);
+  court.programme.value = { court: "north" };
+  context.mock.timers.tick(15_000);
+  assert.ok(between.isRead.value, "nor for ever");
+});

@@ -290,11 +290,24 @@ test("a projector shows the match that is played, and tables between matches", (
 
 test("a court that has gone is named only to who saw it on air", () => {
   const cuts = new Cuts();
-  assert.equal(cuts.why({ court: "a", why: "gone" }, true), "", "the page has just come");
-  assert.equal(cuts.why({ court: "b", why: "gone" }, false), "gone");
-  assert.equal(cuts.why({ court: "b", why: "gone" }, true), "gone", "as long as it is on air");
-  assert.equal(cuts.why({ court: "a", why: "played" }, false), "played");
-  assert.equal(cuts.why({ court: "b", why: "gone" }, true), "", "tables were shown meanwhile");
+  const why = (court, why, isSeen) => cuts.why({ court, why }, isSeen, Phase.PLAYING);
+  assert.equal(why("a", "gone", true), "", "the page has just come");
+  assert.equal(why("b", "gone", false), "gone");
+  assert.equal(why("b", "gone", true), "gone", "as long as it is on air");
+  assert.equal(why("a", "played", false), "played");
+  assert.equal(why("b", "gone", true), "", "tables were shown meanwhile");
+});
+
+test("the reason for a cut ends with the play that it was about", () => {
+  const cuts = new Cuts();
+  const why = (phase, court = "a", why = "closing") => cuts.why({ court, why }, true, phase);
+  assert.equal(why(Phase.CREATED), "closing", "the picture is not here yet");
+  assert.equal(why(Phase.PLAYING), "closing");
+  assert.equal(why(Phase.HALTED), "closing");
+  for (const phase of [Phase.FINISHED, Phase.OFFICIAL, Phase.CREATED, Phase.LOBBY, Phase.PLAYING])
+    assert.equal(why(phase), "", "also in the next match of this court");
+  assert.equal(why(Phase.PLAYING, "b"), "closing", "of the next court");
+  assert.equal(why(Phase.OFFICIAL, "a", "gone"), "gone", "of a court that was over already");
 });
 
 test("a projector that comes after the end shows no match of before", () => {

@@ -19,6 +19,9 @@ _AHEAD_MOST_S = 60
 was set since."""
 _AGAIN_S = 2.0
 _LOOK_S = 0.2
+_SURE_S = 5.0
+"""A server that takes a stream for this long has accepted it [s]: one that refuses the key ends the
+connection after the first pictures."""
 
 
 class LivePicture(NamedTuple):
@@ -56,7 +59,8 @@ class Sender:
         self.failed: Phrase | str | None = None
         """Why the file can't be written, or that FFmpeg lacks the server's protocol; the stream
         has ended then. None: there was no such error."""
-        self._is_away = False
+        self._losses: set[str] = set()
+        """Codes of what was told since the server last took the stream."""
         self._thread.start()
 
     def show(self, picture: LivePicture) -> None:
@@ -93,30 +97,45 @@ class Sender:
 
     def _send_to(self, process: SendingProcess) -> None:
         """Send pictures and sounds until the stream is told to end, or can't go on."""
-        is_new = True
+        is_new, since_s = True, 0.0
         while not self._ending.is_set() or not self._waiting.empty():
             picture = self._next()
             if picture is None:
                 continue
             if is_new:
                 self._sound_until(picture.number)
+                since_s = time.monotonic()
             sound = self._sound_until(picture.number + 1)
             refused = process.send(Part(picture.number, picture.data, sound))
-            is_new = refused is not None
             if refused is None:
+                is_new = False
                 self.sent += 1
-                if self._is_away:
+                if self._losses and time.monotonic() - since_s > _SURE_S:
+                    self._losses.clear()
                     self._tell(say("stream.back", target=self._target.shown))
-                self._is_away = False
             elif refused.is_final or not self._target.is_remote:
                 self.failed = refused.why
                 return
             else:
                 self.left_out += 1
-                if not self._is_away:
-                    self._tell(say("stream.away", target=self._target.shown, why=refused.why))
-                self._is_away = True
+                was_taken = not is_new and time.monotonic() - since_s < _SURE_S
+                self._lost(refused.why, was_taken)
+                is_new = True
                 self._pass(_AGAIN_S)
+
+    def _lost(self, why: Phrase | str, was_taken: bool) -> None:
+        """Tell once that the server is lost, and once that it ends each stream at once.
+
+        Args:
+            why: what FFmpeg says.
+            was_taken: whether the server took pictures a moment ago.
+        """
+        lost = say("stream.away", target=self._target.shown, why=why)
+        if was_taken:
+            lost = say("stream.refused", target=self._target.shown, why=why)
+        if not self._losses or (was_taken and lost.code not in self._losses):
+            self._tell(lost)
+        self._losses.add(lost.code)
 
     def _pass(self, seconds: float) -> None:
         """Drop the pictures in the queue and those of the next `seconds`, with their sounds.

@@ -10,18 +10,23 @@ from contextlib import suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import av
 
+from lacoc_client.film.live.segments import SegmentWatch
 from lacoc_client.film.live.target import Target
 from lacoc_client.film.movie import Movie
+from lacoc_client.play.stopping import unreached
 from lacoc_shared.words import Phrase, say
 
 SOUND_HZ = 48_000
 """Samples a second of the sound."""
 _OPTIONS = {"preset": "veryfast", "crf": "23", "maxrate": "4M", "bufsize": "8M"}
 _SPAWN = get_context("spawn")
+_SEGMENT_MOST_S = 20
+"""A folder in whose list nothing new stands after the pictures of so many seconds is broken."""
 _SILENT_S = 10.0
 """A video server that takes nothing for this long counts as gone [s]."""
 
@@ -92,7 +97,8 @@ class SendingProcess:
     def _start(self) -> tuple[BaseProcess, Any]:
         here, there = _SPAWN.Pipe()
         process = _SPAWN.Process(target=_run, args=(there, *self._what), daemon=True)
-        process.start()
+        with unreached():  # it ignores Ctrl-C itself, but only when all is loaded
+            process.start()
         there.close()
         with suppress(EOFError):  # it has ended already: then the part is not sent
             here.recv()
@@ -122,12 +128,18 @@ def _stream(link: "Connection[Any, Any]", target: Target, size: tuple[int, int],
     part: Part = link.recv()
     first = part.number
     with av.open(target.address, "w", format=target.form, options=target.options) as container:
+        watch = None
+        if target.form == "hls":
+            watch = SegmentWatch(Path(target.address), _SEGMENT_MOST_S * fps)
         film = Movie(container, size, fps, SOUND_HZ, _OPTIONS)
         container.start_encoding()  # the server is asked here
         try:
             while True:
                 film.hear(part.sound)
                 film.add(part.picture, part.number - first)
+                if watch is not None and not watch.is_whole():
+                    link.send(NotSent(say("stream.no-segment")))
+                    return
                 link.send(None)
                 part = link.recv()
         except EOFError:

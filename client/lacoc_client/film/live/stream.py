@@ -14,6 +14,8 @@ from lacoc_client.film.live.pace import PicturePace
 from lacoc_client.film.live.sender import LivePicture, Sender
 from lacoc_client.film.live.sending import SOUND_HZ
 from lacoc_client.film.live.target import Target
+from lacoc_client.film.live.waiting import PageWaiting
+from lacoc_client.film.live.watchdog import Watchdog, watched
 from lacoc_client.film.look import Look
 from lacoc_client.film.shots import JPEG, Shots
 from lacoc_shared.mistakes import UserError
@@ -27,8 +29,15 @@ _SOUNDS_S = 0.1
 _TOLD_S = 10.0
 """Time between two reports [s]."""
 _AGAIN_S = 2.0
+_LOOKED_S = 1.0
+"""Time between two looks at what the page waits for [s]."""
+_HANGS_S = 30.0
+"""A browser that gives no picture for this long is ended [s]; the page's first picture, for which
+shaders are compiled, may take `_OPENS_S` [s]."""
+_OPENS_S = 120.0
 _SLEPT_MOST_S = 0.05
 _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
+_WAITS = "document.querySelector('.overlay > .waits')?.textContent ?? ''"
 
 
 @dataclass(frozen=True)
@@ -70,6 +79,7 @@ class _Streaming:
         self.sender = Sender(target, (look.width, look.height), fps, tell)
         self._held: deque[LivePicture] = deque()
         self._sounds_s = 0.0
+        self._looked_s, self._waiting = 0.0, PageWaiting()
         self._told_s = time.monotonic()
         self._told = (0, 0)
 
@@ -82,13 +92,19 @@ class _Streaming:
         """
         has_begun = False
         while not stopping():
+            dog: Watchdog | None = None
             try:
                 with window(self._look) as (page, paced):
                     has_begun = True
-                    self._show(page, Shots(page, paced), stopping, report)
+                    browser = page.context.browser
+                    assert browser is not None
+                    with watched(browser, stopping, _OPENS_S) as dog:
+                        self._show(page, Shots(page, paced), stopping, report, dog)
             except Error as error:
-                self._tell(say("stream.browser-gone", why=told(error)))
-                time.sleep(_AGAIN_S)
+                if not stopping():
+                    why = dog.why if dog is not None and dog.why else told(error)
+                    self._tell(say("stream.browser-gone", why=why))
+                    time.sleep(_AGAIN_S)
             except UserError as error:
                 if not has_begun or self.sender.failed is not None:
                     raise
@@ -101,6 +117,7 @@ class _Streaming:
         shots: Shots,
         stopping: Callable[[], bool],
         report: Callable[[Report], None],
+        dog: Watchdog,
     ) -> None:
         """Draw the page and send its pictures until the stream is told to stop.
 
@@ -108,12 +125,13 @@ class _Streaming:
             Error: if the browser has ended.
             UserError: if the stream can't be sent.
         """
-        self._open(page, stopping)
+        self._open(page, stopping, dog)
         while not stopping():
-            self._picture(page, shots)
+            if self._picture(page, shots):
+                dog.see(_HANGS_S)
             self._report(report)
 
-    def _open(self, page: Page, stopping: Callable[[], bool]) -> None:
+    def _open(self, page: Page, stopping: Callable[[], bool], dog: Watchdog) -> None:
         """Open the broadcast's page; try again until it opens.
 
         Raises:
@@ -132,20 +150,21 @@ class _Streaming:
                 if is_away:
                     self._tell(say("stream.page-back", address=self._address))
                 return
+            dog.see(_OPENS_S)
             if not is_away:
                 self._tell(say("stream.no-page", address=self._address, why=why))
             is_away = True
             time.sleep(_AGAIN_S)
 
-    def _picture(self, page: Page, shots: Shots) -> None:
-        """Wait until the stream's next picture is due, and take it.
+    def _picture(self, page: Page, shots: Shots) -> bool:
+        """Take the stream's next picture, if it is due soon; return whether it was taken.
 
         Also send the earlier pictures that have waited `_HELD_S` for their sounds.
         """
         wait_s = self._pace.wait_s(time.monotonic())
         if wait_s > _SLEPT_MOST_S:
             time.sleep(_SLEPT_MOST_S)
-            return
+            return False
         time.sleep(wait_s)
         number = self._pace.take(time.monotonic())
         self._held.append(LivePicture(number, shots.take(JPEG)))
@@ -157,11 +176,16 @@ class _Streaming:
             offset_s = time.monotonic() - time.time() - self._began_s
             for at_ms, samples in page.evaluate(_SOUNDS, SOUND_HZ):
                 self.sender.hear(at_ms / 1000 + offset_s, base64.b64decode(samples))
+        if now_s - self._looked_s > _LOOKED_S:
+            self._looked_s = now_s
+            if news := self._waiting.see(page.evaluate(_WAITS), now_s):
+                self._tell(news)
         while self._held and self._pace.time_s(self._held[0].number) < now_s - _HELD_S:
             self.sender.show(self._held.popleft())
         if self.sender.failed is not None:
             why = self.sender.failed
             raise UserError(say("command.cannot-write", path=self._target.shown, why=why))
+        return True
 
     def _report(self, report: Callable[[Report], None]) -> None:
         now_s = time.monotonic()

@@ -14,6 +14,8 @@ class SheetGame(msgspec.Struct, frozen=True):
     record: str = ""
     """File name of the game's record; "": it has no record."""
     outcome: str = ""
+    scores: tuple[int, ...] = ()
+    """The points that count, by seat: the court's, or those that the organiser gave instead."""
 
 
 class SheetMatch(msgspec.Struct, frozen=True):

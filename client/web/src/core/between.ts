@@ -48,7 +48,7 @@ export class Between {
   beginAfter(ms: number): void {
     const phase = computed(() => this.court.frame.value?.phase ?? Phase.CREATED);
     effect(() => {
-      if (phase.value < Phase.OFFICIAL) return;
+      if (!this.ended.value || phase.value < Phase.OFFICIAL) return;
       const timer = setTimeout(() => this.begin(), ms);
       return () => clearTimeout(timer);
     });

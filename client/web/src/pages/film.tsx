@@ -58,6 +58,8 @@ const style: Style = {
   split: flag("split", false),
   shutter,
 };
+/** Points that the organiser of the contest gave instead of the court's. */
+const decided = new URLSearchParams(location.search).getAll("decided").join(" : ");
 const scale = signal(scaleOfWindow());
 document.documentElement.classList.add("broadcast", "film");
 
@@ -122,7 +124,15 @@ export default function Film() {
   const match = recording.value;
   return (
     <main class="overlay" style={`--scale: ${scale.value}`}>
-      {match && <Broadcast match={match} style={style} scale={scale} isLast />}
+      {match && (
+        <Broadcast
+          match={match}
+          style={style}
+          scale={scale}
+          next={decided && t("result.decided", { points: decided })}
+          isLast
+        />
+      )}
       {match?.record.header.setup.origin && <p class="what-if">{t("replay.forkShort")}</p>}
     </main>
   );

@@ -31,6 +31,7 @@ export function waitsFor(court: Court): string {
 /** A sentence that says what is wrong with the court that is shown; "" if nothing is. */
 function troubleOf(court: Court): string {
   const link = court.link.value;
+  if (!link && court.delayMs > 0) return t("link.late", { seconds: court.delayMs / 1000 });
   if (link && !link.connected) {
     const seconds = Math.round(link.silent_s);
     const waits =

@@ -22,10 +22,11 @@ interface OnAirProps {
 /** The court on air and the reason; nothing without a director, and before it begins. */
 export function OnAir({ court, withMatch = false, isSeen = true }: OnAirProps) {
   const cuts = useMemo(() => new Cuts(), [court]);
+  const phase = useMemo(() => phaseOf(court), [court]).value;
   const programme = court.programme.value;
   if (!programme || programme.begins_s > 0) return null;
   const { court: name } = programme;
-  const why = cuts.why(programme, isSeen);
+  const why = cuts.why(programme, isSeen, phase);
   const fixture = withMatch && court.sheet.value ? fixtureOf(court.sheet.value) : "";
   return <Shown court={name} why={why} label={t("director.onAir")} fixture={fixture} />;
 }

@@ -99,7 +99,7 @@ export function ResultCard(props: Props) {
       )}
       <Explained match={match} />
       {!isVoid && <Compared match={match} winner={winnerIndex} withReplay={withReplay} />}
-      {!isLast && (
+      {(next || !isLast) && (
         <div class="next">
           {phase === Phase.FINISHED ? t("hint.finished") : (next ?? nextAt(sheet))}
         </div>

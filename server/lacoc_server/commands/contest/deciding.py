@@ -128,7 +128,8 @@ def draw(
 
     if lot and order:
         raise UserError(say("contest.lot-or-order"))
-    with FactStore(ContestFolder(contest).facts, by) as store:
+    where = ContestFolder(contest)
+    with FactStore(where.facts, by) as store:
         now = compute(store.facts(), FORMATS)
         shown = organiser.drawing(now)
         if lot:
@@ -149,6 +150,7 @@ def draw(
             effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))
         if wanted_so(effect, yes):
             screen.show(organiser.draw(store, shown))
+            organiser.renew_sheet(where, store)
 
 
 def carry_out(
@@ -174,14 +176,15 @@ def carry_out(
         UserError: if `act` refuses, the facts can't be written, or they would change something else
             by now than was shown.
     """
-    from lacoc_server.contest.acts import deciding
+    from lacoc_server.contest.acts import deciding, organiser
     from lacoc_server.contest.kept.folder import ContestFolder
     from lacoc_server.contest.kept.store import FactStore
     from lacoc_server.contest.league.contest import compute
     from lacoc_server.contest.league.formats.installed import FORMATS
     from lacoc_server.contest.league.timetable.steered import steered
 
-    with FactStore(ContestFolder(file).facts, by) as store:
+    where = ContestFolder(file)
+    with FactStore(where.facts, by) as store:
         facts = store.facts()
         now = compute(facts, FORMATS)
         more = act(now)
@@ -199,6 +202,7 @@ def carry_out(
             return more
 
         store.decide(decision)
+        organiser.renew_sheet(where, store)
     screen.show(done or steered(now, more[-1]))
 
 

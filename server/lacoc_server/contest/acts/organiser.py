@@ -1,7 +1,7 @@
 """What an organiser does with a contest: enter teams, take them out, draw, play without courts."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from lacoc_server.contest.headless.play import GameEngine, play_contest
 from lacoc_server.contest.kept import publish
 from lacoc_server.contest.kept.applications import Applications
 from lacoc_server.contest.kept.entries import ContestEntry, HandedIn, gather_entry, weigh
-from lacoc_server.contest.kept.folder import ContestFolder
+from lacoc_server.contest.kept.folder import ContestFolder, RunsAlready
 from lacoc_server.contest.kept.plans import check_drawn, game, note_plans
 from lacoc_server.contest.kept.sheet_writer import Progress, SheetWriter
 from lacoc_server.contest.kept.store import FactStore
@@ -166,11 +166,13 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str 
     Raises:
         UserError: if the team has not entered.
     """
-    with FactStore(ContestFolder(file).facts, by) as store:
+    where = ContestFolder(file)
+    with FactStore(where.facts, by) as store:
         team = team_of(compute(store.facts(), FORMATS), team).name
         store.decide(
             lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
         )
+        renew_sheet(where, store)
     return say("contest.left", team=team)
 
 
@@ -286,6 +288,21 @@ def play_headless(
         with engine as opened:
             played = play_contest(where, store, opened, steer, writer, tell)
         return writer.write(), played
+
+
+def renew_sheet(where: ContestFolder, store: FactStore) -> None:
+    """Write the sheet that pages and films read, if there is one and no office writes it.
+
+    An office writes each change itself; after its end, decisions can still be made.
+
+    Raises:
+        UserError: if the sheet can't be written.
+    """
+    if not where.sheet.exists():
+        return
+    with suppress(RunsAlready), where.alone():
+        writer = SheetWriter(where, lambda _done, _all: None)
+        writer(compute(store.facts(), FORMATS))
 
 
 def sheet(file: Path) -> ContestSheet:

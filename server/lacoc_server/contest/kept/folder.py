@@ -16,6 +16,10 @@ from lacoc_shared.mistakes import UserError, text_of
 from lacoc_shared.words import say
 
 
+class RunsAlready(UserError):
+    """Another process runs the contest."""
+
+
 class ContestFolder:
     """The files of a contest.
 
@@ -68,7 +72,8 @@ class ContestFolder:
         The lock also ends if this process is killed.
 
         Raises:
-            UserError: if another process runs the contest, or the folder can't be written.
+            RunsAlready: if another process runs the contest.
+            UserError: if the folder can't be written.
         """
         try:
             lock = self._lock.open("ab")
@@ -78,7 +83,7 @@ class ContestFolder:
             raise UserError(say("command.cannot-write", path=path, why=why)) from None
         with lock:
             if not hold(lock):
-                raise UserError(say("contest.runs-already", file=text_of(self.file)))
+                raise RunsAlready(say("contest.runs-already", file=text_of(self.file)))
             yield
 
     @property
