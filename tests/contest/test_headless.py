@@ -63,6 +63,7 @@ def test_any_number_of_processes_gives_the_same_tables(played: Path, tmp_path: P
     assert ranks == [1 + sum(other < rank for other in ranks) for rank in ranks]
 
 
+@pytest.mark.long
 def test_without_a_network_no_draw_waits(played: Path, tmp_path: Path) -> None:
     """Nobody is there to draw, so a stage that waits for the organiser is drawn at once."""
     waits = FINAL.replace("teams = 2", 'teams = 2\ndraw = "organiser"')
@@ -181,6 +182,7 @@ def test_the_sheet_has_what_is_decided_after_the_end(
     assert second not in counted()
 
 
+@pytest.mark.long
 def test_one_changed_entry_costs_its_own_games(tmp_path: Path) -> None:
     """In a new contest with the same records, only the games of a changed entry are played."""
     bots = dict([*BOTS.items()][:4])

@@ -8,6 +8,7 @@ from typing import Any
 
 import psutil
 import pytest
+from every_third import every_third
 from small_contest import CONTEST, SWISS
 from waiting import LIMIT_S, until
 
@@ -44,7 +45,7 @@ def test_a_court_whose_port_is_taken_says_so_before_it_tries_again(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("listen", [None, "127.0.0.1:0"])
+@pytest.mark.parametrize("listen", every_third(["127.0.0.1:0", None]))
 def test_killed_pages_come_back_at_their_address(tmp_path: Path, listen: str | None) -> None:
     """Also if they took a free port: links lead there, and pages that are open come back."""
     file = tmp_path / "contest.toml"

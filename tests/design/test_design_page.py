@@ -224,6 +224,7 @@ def test_mistakes_of_a_table_have_their_places(page: DesignClient) -> None:
     assert refused(page, "robot", robot=robot)["mistakes"]
 
 
+@pytest.mark.long
 def test_a_search_tells_how_far_it_is_and_can_be_cancelled(page: DesignClient) -> None:
     """Progress has the name that the page gave to the search; a cancelled search gets a reply."""
     search = page.send("coach", job="search", table=sample(page), size="cell", seconds=60.0)

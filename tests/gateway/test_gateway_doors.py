@@ -378,6 +378,7 @@ def test_a_full_hall_keeps_nobody_from_the_seats(venue: Venue) -> None:
     contestant.ask("watch", token=TOKENS["left"])  # the page keeps its own place
 
 
+@pytest.mark.long
 def test_pages_of_contestants_have_a_bound_too(venue: Venue) -> None:
     """Pages whose token is right have a limit of their own, and take no spectator's place."""
     venue.court()

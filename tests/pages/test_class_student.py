@@ -159,6 +159,7 @@ def test_hand_rules_and_the_handed_out_table(open_page: OpenPage, room: ClassRoo
         page.sees(".join form")
 
 
+@pytest.mark.long
 def test_goes_on_after_the_gateway_was_killed(
     open_page: OpenPage, room: ClassRoom, folder: Path, ending: ExitStack, console: Any
 ) -> None:

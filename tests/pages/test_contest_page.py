@@ -176,6 +176,7 @@ def test_a_bracket_shows_all_its_texts(cup: Cup, open_page: OpenPage) -> None:
     assert cut == []
 
 
+@pytest.mark.long
 def test_a_team_shows_its_way(cup: Cup, open_page: OpenPage) -> None:
     """A click on a team shows its matches, places and rating, at an address of its own."""
     page = open_page(viewport=LAPTOP)
@@ -236,6 +237,7 @@ def test_the_projector_turns_over_by_itself(cup: Cup, open_page: OpenPage) -> No
     expect(page.locator(".slide")).to_have_attribute("data-slide", "podium")
 
 
+@pytest.mark.long
 def test_paper_has_all_rounds(cup: Cup, open_page: OpenPage) -> None:
     """On paper every match of every round is there, and the page's buttons are not."""
     page = open_page(viewport=LAPTOP)

@@ -45,6 +45,7 @@ def test_the_pure_parts_of_the_pages(cases: list[Path], edits: int) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.long
 def test_a_broken_layer_and_a_circle_are_found(tmp_path: Path) -> None:
     """The linter refuses an import from a higher layer, and a circle of imports (also of types)."""
     shutil.copytree(WEB / "src", tmp_path / "src")

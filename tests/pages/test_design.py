@@ -332,6 +332,7 @@ def test_other_gaits_are_watched_and_taken(
     page.sees(".variants", "Round 1")  # variants of the table that is back
 
 
+@pytest.mark.long
 def test_a_table_goes_to_the_page_on_which_teams_enter(
     open_page: OpenPage, address: tuple[str, str]
 ) -> None:

@@ -380,6 +380,7 @@ def test_finals_wait_for_the_organiser(waiting: Event, open_page: OpenPage) -> N
     expect(office.locator(".slot", has_text="Final")).to_have_count(1)
 
 
+@pytest.mark.long
 def test_a_wrong_key_opens_no_office(event: Event, open_page: OpenPage) -> None:
     """With a wrong key the page shows no entries, and says why."""
     page = open_page(viewport=LAPTOP)

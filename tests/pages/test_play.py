@@ -170,6 +170,7 @@ def test_the_card_says_what_is_wrong_and_remembers(venue: Venue, sit: Sit, tmp_p
     other.sees(".own-seat[data-seat='1']", "free")
 
 
+@pytest.mark.long
 def test_files_are_sorted_by_what_is_in_them(venue: Venue, sit: Sit, tmp_path: Path) -> None:
     """The page tells files apart by their content, not by their names or encodings."""
     page = opened(venue, sit)
@@ -362,6 +363,7 @@ HIDE = """(() => {
 """With `isHidden` a page gets no pictures, and new timers of a second, as in a hidden tab."""
 
 
+@pytest.mark.long
 def test_a_hidden_tab_keeps_its_seat(venue: Venue, sit: Sit) -> None:
     """A page that gets no pictures goes on to name frames, and is heard by the court."""
     page = opened(venue, sit)

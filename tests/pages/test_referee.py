@@ -301,6 +301,7 @@ def test_declaring_a_winner_ends_a_halted_match(court: Venue, referee: Referee) 
     log_has(page, "By the rules, the match is a draw. Score: 18")
 
 
+@pytest.mark.long
 def test_a_wrong_token_is_said_beside_the_field(court: Venue, referee: Referee) -> None:
     """A wrong token is refused beside its field; the name stays, and the right token works."""
     page = referee()
@@ -336,6 +337,7 @@ def test_a_token_that_was_replaced_is_not_shown_for_ever(venue: Venue, referee: 
     at_the_desk(page)
 
 
+@pytest.mark.long
 def test_the_file_that_a_browser_is_given_leads_to_the_page(
     court: Venue, open_page: OpenPage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -314,6 +314,7 @@ def test_the_servers_list_and_the_address(
     missing.sees(".recordings")
 
 
+@pytest.mark.long
 def test_a_recording_that_was_given_up_says_nothing_more(
     library: Venue, open_page: OpenPage
 ) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from chromium import OpenPage, build_stand
 from debian import locked
+from every_third import every_third
 from match_file import match_file
 from playwright.sync_api import Page
 from stand import Stand, served, share_of
@@ -231,7 +232,7 @@ def test_without_webgl_the_field_is_drawn_from_above(stand: Stand, site: Path) -
     assert share_of(picture, ORANGE) > 0.03
 
 
-@pytest.mark.parametrize("arena", ["othello", "flag-strike"])
+@pytest.mark.parametrize("arena", every_third(["flag-strike", "othello"]))
 def test_the_picture_is_there(stand: Stand, site: Path, arena: str) -> None:
     """At 800 x 450 and low quality the picture is not black, and each robot has its colour."""
     last = Recorded(site, arena).frames[-1]
@@ -326,6 +327,7 @@ def test_dragging_turns_the_camera_and_is_no_click(stand: Stand) -> None:
     assert np.allclose(stand.view("eye"), eye, atol=1e-6)
 
 
+@pytest.mark.long
 def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
     """The right button, and a left button whose release was lost, do not turn the camera."""
     stand.open("othello.bin", speed=0, q="low")
@@ -345,6 +347,7 @@ def test_only_the_left_button_turns_the_camera(stand: Stand) -> None:
     assert stand.view("eye") == eye
 
 
+@pytest.mark.long
 def test_a_lost_context_comes_back(stand: Stand) -> None:
     """The picture comes back after the graphics driver has restarted."""
     stand.open("othello.bin", speed=0, q="low")

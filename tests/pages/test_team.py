@@ -154,6 +154,7 @@ def play_a_match(player: Contestant) -> str:
     return next(name for name in TEAMS if name != PERSON and name in teams)
 
 
+@pytest.mark.long
 def test_a_team_that_plays_no_more_reads_why_and_is_not_alarmed(
     venue: Venue, sit: Sit, console: Any
 ) -> None:

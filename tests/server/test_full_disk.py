@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import msgspec
 import pytest
+from every_third import every_third
 from running import Party, party, served, write_contest
 from waiting import LIMIT_S
 
@@ -97,7 +98,7 @@ def is_given(those: Party, reason: str) -> bool:
     return any(reason in render(msgspec.convert(one, Phrase | str)) for one in given)
 
 
-@pytest.mark.parametrize("disk_of", [limited, small])
+@pytest.mark.parametrize("disk_of", every_third([small, limited]))
 def test_a_full_disk_halts_the_match(disk_of: Callable[..., object], tmp_path: Path) -> None:
     """While the disk is full no beat passes; when there is room again, the match is halted.
 

