@@ -44,7 +44,7 @@ def test_nobody_is_sent_away(venue: Venue, open_page: OpenPage, console: Any) ->
     console.expect_a_break()
     console.expect("404")  # of a piece that is not whole yet
     console.expect("INTERNET_DISCONNECTED")
-    venue.court()
+    court = venue.court()
     web = venue.web(*ONE)
     playing(venue)
     first = venue.page()
@@ -76,3 +76,7 @@ def test_nobody_is_sent_away(venue: Venue, open_page: OpenPage, console: Any) ->
     seen = show.page.evaluate("window.seenBeats")
     assert len(seen) > 20
     assert seen == sorted(seen)
+
+    court.kill()
+    show.sees(".banner", "no answer for")  # of its court, and not that the page has no place
+    show.until(lambda: "no answer for 8 s" in show.page.inner_text(".banner"), "no seconds pass")

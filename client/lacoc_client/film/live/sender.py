@@ -118,8 +118,9 @@ class Sender:
                 return
             else:
                 self.left_out += 1
-                was_taken = not is_new and time.monotonic() - since_s < _SURE_S
-                self._lost(refused.why, was_taken)
+                # FFmpeg's own errors only: a process that was killed says nothing of the server.
+                was_taken = not is_new and isinstance(refused.why, str)
+                self._lost(refused.why, was_taken and time.monotonic() - since_s < _SURE_S)
                 is_new = True
                 self._pass(_AGAIN_S)
 

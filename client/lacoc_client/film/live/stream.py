@@ -31,10 +31,11 @@ _TOLD_S = 10.0
 _AGAIN_S = 2.0
 _LOOKED_S = 1.0
 """Time between two looks at what the page waits for [s]."""
-_HANGS_S = 30.0
-"""A browser that gives no picture for this long is ended [s]; the page's first picture, for which
-shaders are compiled, may take `_OPENS_S` [s]."""
+_HANGS_S = 60.0
+"""A browser that gives no picture for this long is ended [s]."""
 _OPENS_S = 120.0
+"""For so long after it was opened, a page may give no picture [s]: a slow machine compiles shaders
+for many seconds."""
 _SLEPT_MOST_S = 0.05
 _SOUNDS = "(rate) => window.__sounds?.(rate) ?? []"
 _WAITS = "document.querySelector('.overlay > .waits')?.textContent ?? ''"
@@ -126,9 +127,11 @@ class _Streaming:
             UserError: if the stream can't be sent.
         """
         self._open(page, stopping, dog)
+        opened_s = time.monotonic()
         while not stopping():
             if self._picture(page, shots):
-                dog.see(_HANGS_S)
+                is_open = time.monotonic() - opened_s > _OPENS_S
+                dog.see(_HANGS_S if is_open else _OPENS_S)
             self._report(report)
 
     def _open(self, page: Page, stopping: Callable[[], bool], dog: Watchdog) -> None:

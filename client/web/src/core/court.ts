@@ -18,6 +18,7 @@ import {
   type Message,
   type Notice,
   type OwnFiles,
+  PIECE_MS,
   PROTOCOL,
   type Programme,
   type RefereeState,
@@ -31,6 +32,8 @@ import {
 
 /** A frame older than this is not shown as live. */
 const STALE_MS = 1000 * SILENT_AFTER_S;
+/** After this time without a piece the page says why it is not connected. */
+const NO_PIECE_MS = 5 * PIECE_MS;
 const LOOK_MS = 200;
 const PLAYOUT_MS = 20;
 /** All that tells how the match stands is shown with the delay, and in its order. */
@@ -111,8 +114,9 @@ export class Court implements Match {
   private arrivals: number[] = [];
   private held: { dueMs: number; take: () => void }[] = [];
   private pieces: PieceSource | null = null;
-  /** Whether frames come in pieces now. */
+  /** Whether pieces come now. */
   private readonly piecesCome = signal(false);
+  private pieceMs = Number.NEGATIVE_INFINITY;
   /** What came of a court that was cut to, until there is a frame of it; null: no cut is open. */
   private coming: (() => void)[] | null = null;
 
@@ -192,12 +196,11 @@ export class Court implements Match {
 
   private takePiece(messages: readonly Due[], begins: boolean): void {
     const first = messages[0]?.dueMs ?? 0;
+    this.piecesCome.value = true; // also without a frame: the director may not have begun
+    this.pieceMs = performance.now();
     if (begins) this.forgetLog(first);
     for (const { message, dueMs } of messages)
-      this.later(dueMs, (shownMs) => {
-        this.piecesCome.value = true;
-        this.take(message, shownMs);
-      });
+      this.later(dueMs, (shownMs) => this.take(message, shownMs));
   }
 
   private endPieces(): void {
@@ -358,8 +361,7 @@ export class Court implements Match {
     const nowMs = performance.now();
     this.arrivals = this.arrivals.filter((atMs) => nowMs - atMs < 1000);
     this.framesHz.value = this.arrivals.length;
-    if (nowMs - this.arrivedMs <= STALE_MS) return;
-    this.live.value = false;
-    this.piecesCome.value = false;
+    if (nowMs - this.pieceMs > NO_PIECE_MS) this.piecesCome.value = false;
+    if (nowMs - this.arrivedMs > STALE_MS) this.live.value = false;
   }
 }
