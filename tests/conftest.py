@@ -18,6 +18,9 @@ os.environ["LACOC_LANGUAGE"] = "en"
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+_PRIORITY = os.nice(0) if hasattr(os, "nice") else 0
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the option --long, with which `make test-all` runs pytest."""
     parser.addoption(
@@ -51,6 +54,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_collection_finish() -> None:
     """Take what collecting made out of the garbage collector, which else visits it all the time."""
     gc.freeze()
+
+
+def pytest_runtest_logfinish(nodeid: str) -> None:
+    """Stop if a test lowered the priority of this process: later tests would be starved."""
+    if hasattr(os, "nice") and os.nice(0) != _PRIORITY:
+        pytest.exit(f"{nodeid} changed the priority of its process")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

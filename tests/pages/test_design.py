@@ -220,6 +220,7 @@ def test_a_number_moves_the_leg_and_a_trial_explains_it(
     page.is_toasted("red cells have no angle")
 
 
+@pytest.mark.long
 def test_a_beginner_s_first_gait(
     open_page: OpenPage, address: tuple[str, str], sample: Path
 ) -> None:

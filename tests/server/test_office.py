@@ -282,6 +282,7 @@ def test_mistakes_in_frozen_files_are_told(waiting: Office) -> None:
     assert {mistake.file for mistake in refusal.mistakes} == {"bees.txt"}
 
 
+@pytest.mark.long
 def test_a_record_is_copied_while_it_is_written(
     waiting: Office, folder: Path, tmp_path: Path
 ) -> None:

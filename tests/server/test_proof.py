@@ -152,11 +152,12 @@ def test_honest_records_hold_with_another_arithmetic(paths: Sequence[Path]) -> N
 
 
 @pytest.mark.slow
-def test_no_forgery_passes(paths: Sequence[Path]) -> None:
+@pytest.mark.parametrize("count", [20, pytest.param(FORGERIES, marks=pytest.mark.long)])
+def test_no_forgery_passes(paths: Sequence[Path], count: int) -> None:
     """No forgery of a record passes, even if it names another arithmetic."""
-    found = forge(paths, FORGERIES, seed=1)
+    found = forge(paths, count, seed=1)
     assert found.passed == []
-    assert len(found.kinds) > 15
+    assert len(found.kinds) > 0.3 * count
 
 
 @pytest.mark.slow

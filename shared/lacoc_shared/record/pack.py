@@ -162,7 +162,6 @@ def main(folder: str, *match_ids: str) -> int:
     With "--copy" in place of the folder, the other arguments are the path of a packed file and the
     segments of one match. The segments are packed into that file, and stay.
     """
-    give_way()  # the next match is running
     if folder == "--copy":
         return _copy(*map(Path, match_ids))
     code = 0
@@ -189,4 +188,5 @@ def _copy(out: Path, *segments: Path) -> int:
 
 
 if __name__ == "__main__":
+    give_way()  # the next match is running
     sys.exit(main(*sys.argv[1:]))
