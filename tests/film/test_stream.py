@@ -291,6 +291,7 @@ def test_a_segment_that_is_not_on_the_disk_is_found(tmp_path: Path) -> None:
     path.write_text("gone\n")
     assert not watch.is_whole()
     path.unlink()
+    assert not watch.is_whole()
     path.write_text("")
     assert not watch.is_whole()
 

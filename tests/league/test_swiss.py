@@ -83,7 +83,7 @@ def check_round(players: Sequence[SwissTeam], round_number: int) -> None:
         assert found == total_faults(fewest_faults(players))
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(
     teams=st.integers(2, 24),
     number=st.integers(1, 8),
@@ -118,7 +118,7 @@ def test_a_round_that_needs_a_fault_is_paired_at_once() -> None:
     assert total_faults(pairs) == (0, 0, 1)
 
 
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(teams=st.integers(4, 16).map(lambda half: 2 * half), seed=st.integers(0, 2**32))
 def test_sides_differ_by_at_most_one(teams: int, seed: int) -> None:
     """In n/4 + 1 rounds of n teams, each team's matches on the two sides differ by at most one.

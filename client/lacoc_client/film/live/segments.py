@@ -25,16 +25,15 @@ class SegmentWatch:
     def is_whole(self) -> bool:
         """Return whether the stream is on the disk so far; called after each picture."""
         state = self._state()
-        self._unchanged = self._unchanged + 1 if state == self._seen else 0
-        if self._unchanged:
+        if state == self._seen:
+            self._unchanged += 1
             return self._unchanged < self._patience
-        self._seen = state
-        listed = [line for line in self._path.read_text("utf-8").splitlines() if line[:1] != "#"]
-        if not listed:
-            return state is None  # FFmpeg makes the list with its first segment
+        self._seen, self._unchanged = state, 0
         try:
-            size = (self._path.parent / listed[-1]).stat().st_size
-        except OSError:
+            lines = self._path.read_text("utf-8").splitlines()
+            *_, newest = (line for line in lines if line[:1] != "#")
+            size = (self._path.parent / newest).stat().st_size
+        except (OSError, ValueError):  # the list or its newest segment is missing, or it has none
             return False
         return size > 0 and size % _PACKET_BYTES == 0
 

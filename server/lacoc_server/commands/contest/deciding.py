@@ -88,6 +88,7 @@ def withdraw(
     if more and not wanted_so(deciding.effect(facts, more), yes):
         return
     screen.show(organiser.take_out(contest, team, reason, disqualified=disqualify, by=by))
+    organiser.renew_sheet(contest)
 
 
 def draw(
@@ -128,8 +129,7 @@ def draw(
 
     if lot and order:
         raise UserError(say("contest.lot-or-order"))
-    where = ContestFolder(contest)
-    with FactStore(where.facts, by) as store:
+    with FactStore(ContestFolder(contest).facts, by) as store:
         now = compute(store.facts(), FORMATS)
         shown = organiser.drawing(now)
         if lot:
@@ -150,7 +150,7 @@ def draw(
             effect.append(say("contest.meet-again", pairs=[" – ".join(pair) for pair in again]))
         if wanted_so(effect, yes):
             screen.show(organiser.draw(store, shown))
-            organiser.renew_sheet(where, store)
+            organiser.renew_sheet(contest)
 
 
 def carry_out(
@@ -183,8 +183,7 @@ def carry_out(
     from lacoc_server.contest.league.formats.installed import FORMATS
     from lacoc_server.contest.league.timetable.steered import steered
 
-    where = ContestFolder(file)
-    with FactStore(where.facts, by) as store:
+    with FactStore(ContestFolder(file).facts, by) as store:
         facts = store.facts()
         now = compute(facts, FORMATS)
         more = act(now)
@@ -202,8 +201,8 @@ def carry_out(
             return more
 
         store.decide(decision)
-        organiser.renew_sheet(where, store)
     screen.show(done or steered(now, more[-1]))
+    organiser.renew_sheet(file)
 
 
 def wanted_so(effect: Iterable[Phrase], yes: bool) -> bool:

@@ -166,13 +166,11 @@ def take_out(file: Path, team: str, reason: str, *, disqualified: bool, by: str 
     Raises:
         UserError: if the team has not entered.
     """
-    where = ContestFolder(file)
-    with FactStore(where.facts, by) as store:
+    with FactStore(ContestFolder(file).facts, by) as store:
         team = team_of(compute(store.facts(), FORMATS), team).name
         store.decide(
             lambda facts: leaving(compute(facts, FORMATS), team, reason, disqualified=disqualified)
         )
-        renew_sheet(where, store)
     return say("contest.left", team=team)
 
 
@@ -290,7 +288,7 @@ def play_headless(
         return writer.write(), played
 
 
-def renew_sheet(where: ContestFolder, store: FactStore) -> None:
+def renew_sheet(file: Path) -> None:
     """Write the sheet that pages and films read, if there is one and no office writes it.
 
     An office writes each change itself; after its end, decisions can still be made.
@@ -298,9 +296,10 @@ def renew_sheet(where: ContestFolder, store: FactStore) -> None:
     Raises:
         UserError: if the sheet can't be written.
     """
+    where = ContestFolder(file)
     if not where.sheet.exists():
         return
-    with suppress(RunsAlready), where.alone():
+    with suppress(RunsAlready), where.alone(), FactStore(where.facts) as store:
         writer = SheetWriter(where, lambda _done, _all: None)
         writer(compute(store.facts(), FORMATS))
 
