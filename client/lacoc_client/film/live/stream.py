@@ -127,6 +127,7 @@ class _Streaming:
             UserError: if the stream can't be sent.
         """
         self._open(page, stopping, dog)
+        dog.look()
         opened_s = time.monotonic()
         while not stopping():
             if self._picture(page, shots):

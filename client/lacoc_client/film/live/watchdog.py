@@ -22,21 +22,30 @@ class Watchdog:
     """Watches a browser on a thread, and ends its processes if nothing comes from it.
 
     Args:
-        processes: ids of the browser's processes.
+        browser: the browser; only the thread that opened it may make this object.
         stopping: whether the stream is to stop.
         patience_s: for so long the browser may show nothing [s].
     """
 
-    def __init__(
-        self, processes: list[int], stopping: Callable[[], bool], patience_s: float
-    ) -> None:
+    def __init__(self, browser: Browser, stopping: Callable[[], bool], patience_s: float) -> None:
         self.why: Phrase | None = None
         """Why the browser was ended; None: it was not."""
-        self._processes, self._stopping, self._patience_s = processes, stopping, patience_s
+        self._tools = browser.new_browser_cdp_session()
+        self._stopping, self._patience_s = stopping, patience_s
+        self.look()
         self._seen_s = time.monotonic()
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
+
+    def look(self) -> None:
+        """Note which processes the browser has; a page that is opened may get a new one.
+
+        Raises:
+            Error: if the browser has ended.
+        """
+        found = self._tools.send("SystemInfo.getProcessInfo")["processInfo"]
+        self._processes: list[int] = [one["id"] for one in found]
 
     def see(self, patience_s: float) -> None:
         """Note that something came from the browser, which has `patience_s` for the next [s]."""
@@ -67,9 +76,7 @@ def watched(
     Raises:
         Error: if the browser has ended.
     """
-    tools = browser.new_browser_cdp_session()
-    found = tools.send("SystemInfo.getProcessInfo")["processInfo"]
-    watchdog = Watchdog([one["id"] for one in found], stopping, patience_s)
+    watchdog = Watchdog(browser, stopping, patience_s)
     try:
         yield watchdog
     finally:
